@@ -504,6 +504,8 @@ namespace Viscoplastic
           return stress.name;
         case Quantity::force:
           return derived("N", 2);
+        case Quantity::axial_force:
+          return Units(*this).name(Quantity::force, 3);
         case Quantity::energy:
           return energy;
         case Quantity::work_per_area:

@@ -257,6 +257,10 @@ namespace Viscoplastic
           estimate.push_back(squared_estimate[cell->active_cell_index()]);
         ++owned_cell;
       }
+    if (space.axial)
+      for (const DistributedVector *field : fields)
+        if (field->size() > 0)
+          nodal.push_back(field->begin()[*space.axial]);
     BinaryWriter                       archive;
     archive &vertices &nodal &samples &estimate;
     points.exchange(archive);
@@ -409,6 +413,14 @@ namespace Viscoplastic
             if (packed.has_estimate)
               squared_estimate[local->cell->active_cell_index()] = estimate[i];
           }
+        if (space.axial)
+          {
+            require(next + n_fields <= nodal.size());
+            const auto axial = space.owned_axial();
+            for (unsigned int f = 0; axial && f < n_fields; ++f)
+              values[f].begin()[*axial] = nodal[next + f];
+            next += n_fields;
+          }
         require(next == nodal.size() && next_node == points.n_points.size() &&
                 next_point == points.sticks.size() &&
                 next_value == points.values.size());
@@ -419,7 +431,8 @@ namespace Viscoplastic
         *targets[f] = space.ghosted_vector();
         *targets[f] = values[f];
       }
-    return n_cells == n_owned && n_values * dim == space.owned.n_elements() &&
+    return n_cells == n_owned &&
+           n_values * dim == space.dof_handler.n_locally_owned_dofs() &&
            n_face_nodes == face_nodes.size();
   }
 

@@ -95,12 +95,64 @@ namespace Viscoplastic
 
 
 
+    /// Of the mesh and, where there are, the axial ones: see
+    /// AdmissibleSpace::axial.
+    template <int dim>
+    IndexSet
+    with_axial_dofs(const DoFHandler<dim> &dof_handler,
+                    const Scene<dim>      &scene,
+                    const IndexSet        &of_mesh,
+                    const bool             is_relevant)
+    {
+      if (!scene.is_generalized())
+        return of_mesh;
+      const auto n = dof_handler.n_dofs();
+      IndexSet   result(n + dim);
+      result.add_indices(of_mesh);
+      const MPI_Comm comm = dof_handler.get_communicator();
+      if (is_relevant || Utilities::MPI::this_mpi_process(comm) + 1 ==
+                           Utilities::MPI::n_mpi_processes(comm))
+        result.add_range(n, n + dim);
+      result.compress();
+      return result;
+    }
+
+
+
+    /// The diagonal of the box around the coarse mesh, which all ranks know.
+    template <int dim>
+    double
+    size_of_coarse_mesh(const Triangulation<dim> &triangulation)
+    {
+      Point<dim> least, most;
+      for (unsigned int d = 0; d < dim; ++d)
+        {
+          least[d] = std::numeric_limits<double>::max();
+          most[d]  = -least[d];
+        }
+      for (const auto &cell : triangulation.cell_iterators_on_level(0))
+        for (const unsigned int v : cell->vertex_indices())
+          for (unsigned int d = 0; d < dim; ++d)
+            {
+              least[d] = std::min(least[d], cell->vertex(v)[d]);
+              most[d]  = std::max(most[d], cell->vertex(v)[d]);
+            }
+      return least.distance(most);
+    }
+
+
+
     template <int dim>
     IndexSet
     relevant_dofs(const DoFHandler<dim>                          &dof_handler,
+                  const Scene<dim>                               &scene,
                   const std::map<types::boundary_id, MortarRows> &mortar_rows)
     {
-      IndexSet result = DoFTools::extract_locally_relevant_dofs(dof_handler);
+      IndexSet result =
+        with_axial_dofs(dof_handler,
+                        scene,
+                        DoFTools::extract_locally_relevant_dofs(dof_handler),
+                        true);
       for (const auto &of_boundary : mortar_rows)
         for (const auto &[node, row] : of_boundary.second)
           for (const auto &other : row.nodes)
@@ -121,13 +173,20 @@ namespace Viscoplastic
     , mapping(mapping_of<dim>(scene.plane_model()))
     , surface_normals(make_surface_normals(dof_handler, scene))
     , mortar_rows(make_mortar_rows(*this))
-    , owned(dof_handler.locally_owned_dofs())
-    , relevant(relevant_dofs(dof_handler, mortar_rows))
+    , owned(with_axial_dofs(dof_handler,
+                            scene,
+                            dof_handler.locally_owned_dofs(),
+                            false))
+    , relevant(relevant_dofs(dof_handler, scene, mortar_rows))
+    , axial(scene.is_generalized() ?
+              std::make_optional<std::size_t>(relevant.n_elements() - dim) :
+              std::nullopt)
+    , axial_length(size_of_coarse_mesh(dof_handler.get_triangulation()))
     , cells(owned_cells(dof_handler))
     , first_owned(owned.n_elements() > 0 ?
                     relevant.index_within_set(owned.nth_index_in_set(0)) :
                     0)
-    , node_position(owned.n_elements() / dim)
+    , node_position(dof_handler.n_locally_owned_dofs() / dim)
   {
     AssertThrow(Utilities::MPI::max(dof_handler.n_dofs(), communicator) <
                   static_cast<types::global_dof_index>(
@@ -196,8 +255,7 @@ namespace Viscoplastic
 
     // What holds an absent material does not hold the nodes that it shares with
     // the body.
-    std::vector<bool> is_of_body(scene.has_stages() ? owned.n_elements() / dim :
-                                                      0,
+    std::vector<bool> is_of_body(scene.has_stages() ? node_position.size() : 0,
                                  false);
     if (scene.has_stages())
       for (const auto &cell : dof_handler.active_cell_iterators())
@@ -214,7 +272,7 @@ namespace Viscoplastic
     // For each owned node the boundaries that it is on.
     const auto boundaries_of_nodes =
       [&](const std::vector<types::boundary_id> &ids) {
-        std::vector<std::uint64_t> result(owned.n_elements() / dim, 0);
+        std::vector<std::uint64_t> result(node_position.size(), 0);
         for (const auto &cell : dof_handler.active_cell_iterators())
           if (!cell->is_artificial())
             for (const unsigned int f : cell->face_indices())
@@ -297,6 +355,9 @@ namespace Viscoplastic
       }
 
     is_excluded.assign(owned.n_elements(), false);
+    if (const auto of_section = owned_axial())
+      for (std::size_t i = *of_section; i < is_excluded.size(); ++i)
+        is_excluded[i] = i > *of_section || scene.axial_strain;
     for (std::size_t n = 0; n < mask.size(); ++n)
       {
         const auto first_dof = owned.nth_index_in_set(n * dim);
@@ -512,6 +573,20 @@ namespace Viscoplastic
                                     /* keep_constrained_dofs = */ false,
                                     Utilities::MPI::this_mpi_process(
                                       communicator));
+    if (axial)
+      {
+        const auto                           n = dof_handler.n_dofs();
+        std::vector<types::global_dof_index> others;
+        for (const auto dof : relevant)
+          if (dof < n && !hanging_in_frames.is_constrained(dof))
+            {
+              pattern.add(dof, n);
+              others.push_back(dof);
+            }
+        pattern.add_entries(n, others.begin(), others.end());
+        for (unsigned int d = 0; d < dim; ++d)
+          pattern.add(n + d, n + d);
+      }
     if (!couplings.empty())
       {
         std::vector<types::global_dof_index> dofs(
@@ -528,6 +603,20 @@ namespace Viscoplastic
           }
       }
     pattern.compress();
+  }
+
+
+
+  template <int dim>
+  void
+  AdmissibleSpace<dim>::get_dofs(
+    const typename DoFHandler<dim>::active_cell_iterator &cell,
+    std::vector<types::global_dof_index>                 &dofs) const
+  {
+    dofs.resize(dof_handler.get_fe().n_dofs_per_cell());
+    cell->get_dof_indices(dofs);
+    for (unsigned int d = 0; axial && d < dim; ++d)
+      dofs.push_back(dof_handler.n_dofs() + d);
   }
 
 
@@ -601,6 +690,9 @@ namespace Viscoplastic
                                        DistributedVector &in_frames) const
   {
     const auto first = owned.n_elements() > 0 ? owned.nth_index_in_set(0) : 0;
+    if (const auto of_section = owned_axial(); of_section && scene.axial_strain)
+      in_frames.begin()[*of_section] =
+        axial_length * scene.axial_strain->value(Point<dim>(), t);
     for (const BoundaryNode &node : nodes)
       {
         const NodalFrame<dim> &frame = frames[node.frame];

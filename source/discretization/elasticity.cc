@@ -49,7 +49,8 @@ namespace Viscoplastic
                       const Stiffness     &stiffness,
                       const bool           mean_dilatation,
                       FullMatrix<double>  &cell_matrix,
-                      const PlaneModel     plane_model)
+                      const PlaneModel     plane_model,
+                      const double         axial_strain)
   {
     const bool         is_ring = plane_model == PlaneModel::axisymmetric;
     const unsigned int n       = fe_values.dofs_per_cell;
@@ -66,7 +67,11 @@ namespace Viscoplastic
                       (is_ring ? hoop_strain(fe_values, i, q) : 0.)) *
                      fe_values.JxW(q) / volume;
 
-    std::vector<SymmetricTensor<2, 3>> strain(n), stress(n);
+    const bool                         has_axial = cell_matrix.m() > n;
+    const unsigned int                 n_all     = has_axial ? n + 1 : n;
+    std::vector<SymmetricTensor<2, 3>> strain(n_all), stress(n_all);
+    if (has_axial)
+      strain[n][2][2] = axial_strain;
     cell_matrix = 0.;
     for (const unsigned int q : fe_values.quadrature_point_indices())
       {
@@ -81,15 +86,20 @@ namespace Viscoplastic
               strain[i][2][2] = hoop_strain(fe_values, i, q);
             if (mean_dilatation)
               strain[i] = with_dilatation(strain[i], mean[i]);
-            stress[i] = stiffness.stress(strain[i]) * fe_values.JxW(q);
           }
-        for (unsigned int i = 0; i < n; ++i)
-          for (unsigned int j = 0; j <= i; ++j)
-            cell_matrix(i, j) += strain[i] * stress[j];
+        for (unsigned int i = 0; i < n_all; ++i)
+          {
+            stress[i] = stiffness.stress(strain[i]) * fe_values.JxW(q);
+            for (unsigned int j = 0; j <= i; ++j)
+              cell_matrix(i, j) += strain[i] * stress[j];
+          }
       }
-    for (unsigned int i = 0; i < n; ++i)
-      for (unsigned int j = i + 1; j < n; ++j)
+    for (unsigned int i = 0; i < n_all; ++i)
+      for (unsigned int j = i + 1; j < n_all; ++j)
         cell_matrix(i, j) = cell_matrix(j, i);
+    // What is no unknown gets a diagonal for solvers to divide by.
+    for (unsigned int i = n_all; i < cell_matrix.m(); ++i)
+      cell_matrix(i, i) = cell_matrix(n, n);
   }
 
 
@@ -105,16 +115,16 @@ namespace Viscoplastic
     space.make_sparsity_pattern(pattern);
     matrix.reinit(pattern);
 
-    const FiniteElement<dim>            &fe = space.dof_handler.get_fe();
-    FEValues<dim>                        fe_values(space.mapping,
+    const FiniteElement<dim> &fe = space.dof_handler.get_fe();
+    FEValues<dim>             fe_values(space.mapping,
                             fe,
                             QGauss<dim>(2),
                             update_values | update_gradients |
                               update_JxW_values | update_quadrature_points);
-    const unsigned int                   n = fe.n_dofs_per_cell();
-    FullMatrix<double>                   cartesian(n, n), cell_matrix(n, n);
-    const Stiffness                     *last = nullptr;
-    std::vector<types::global_dof_index> dofs(n);
+    const unsigned int n = fe.n_dofs_per_cell() + (space.axial ? dim : 0);
+    FullMatrix<double> cartesian(n, n), cell_matrix(n, n);
+    const Stiffness   *last = nullptr;
+    std::vector<types::global_dof_index> dofs;
     for (std::size_t c = 0; c < space.cells.size(); ++c)
       {
         const auto &cell = space.cells[c];
@@ -127,10 +137,11 @@ namespace Viscoplastic
                               stiffness,
                               mean_dilatation,
                               cartesian,
-                              space.scene.plane_model());
+                              space.scene.plane_model(),
+                              1. / space.axial_length);
         last        = &stiffness;
         cell_matrix = cartesian;
-        cell->get_dof_indices(dofs);
+        space.get_dofs(cell, dofs);
         space.add_cell_matrix(dofs, cell_matrix, matrix);
       }
     matrix.compress(VectorOperation::add);
@@ -145,13 +156,15 @@ namespace Viscoplastic
                          const Stiffness &,
                          const bool,
                          FullMatrix<double> &,
-                         const PlaneModel);
+                         const PlaneModel,
+                         const double);
   template void
   elastic_cell_matrix<3>(const FEValues<3> &,
                          const Stiffness &,
                          const bool,
                          FullMatrix<double> &,
-                         const PlaneModel);
+                         const PlaneModel,
+                         const double);
   template void
   assemble_elastic_matrix<2>(const AdmissibleSpace<2> &,
                              const ElasticModuli<2> &,

@@ -130,6 +130,19 @@ namespace Viscoplastic
 
   template <int dim>
   double
+  axial_force(const AdmissibleSpace<dim> &space, const Forces<dim> &forces)
+  {
+    const auto axial = space.owned_axial();
+    return Utilities::MPI::sum(axial ? forces.internal.begin()[*axial] *
+                                         space.axial_length :
+                                       0.,
+                               space.communicator);
+  }
+
+
+
+  template <int dim>
+  double
   external_work(const AdmissibleSpace<dim> &space,
                 const Forces<dim>          &old_forces,
                 const Forces<dim>          &forces)
@@ -149,6 +162,13 @@ namespace Viscoplastic
         for (unsigned int i = 0; i < frame.n_fixed; ++i)
           reaction_work += mean[i] * change.begin()[first + frame.fixed[i]];
       });
+    if (const auto axial = space.owned_axial();
+        axial && space.scene.axial_strain)
+      for (const Forces<dim> *at : {&old_forces, &forces})
+        reaction_work +=
+          0.5 *
+          (at->internal.begin()[*axial] - at->load.values.begin()[*axial]) *
+          change.begin()[*axial];
     return work + Utilities::MPI::sum(reaction_work, space.communicator);
   }
 
@@ -278,6 +298,8 @@ namespace Viscoplastic
                                                const Forces<dim> &);           \
   template std::map<types::boundary_id, Tensor<1, dim>> reactions<dim>(        \
     const AdmissibleSpace<dim> &, const Forces<dim> &);                        \
+  template double             axial_force<dim>(const AdmissibleSpace<dim> &,   \
+                                   const Forces<dim> &);           \
   template double             external_work<dim>(const AdmissibleSpace<dim> &, \
                                      const Forces<dim> &,          \
                                      const Forces<dim> &);         \

@@ -90,6 +90,8 @@ namespace Viscoplastic
             const SymmetricTensor<2, 3> tau =
               stress(values.quadrature_point(q), cell->material_id()) *
               values.JxW(q);
+            if (space.axial)
+              cartesian[*space.axial] += tau[2][2] / space.axial_length;
             for (const unsigned int v : cell->vertex_indices())
               {
                 const auto node =
@@ -121,7 +123,8 @@ namespace Viscoplastic
       return strain(scene.initial_displacement->vector(x, 0.),
                     gradient,
                     x,
-                    scene.plane_model());
+                    scene.plane_model(),
+                    0.);
     }
 
 
@@ -334,6 +337,7 @@ namespace Viscoplastic
       for (const unsigned int q : values.quadrature_point_indices())
         {
           SymmetricTensor<2, 3> error;
+          error[2][2] = -space.axial_strain(state.u.begin());
           for (const unsigned int v : cell->vertex_indices())
             {
               const double *u =

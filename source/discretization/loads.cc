@@ -137,6 +137,10 @@ namespace Viscoplastic
   {
     Load<dim> load = constant;
     add(t, true, load);
+    if (const auto axial = space.owned_axial();
+        axial && space.scene.axial_force)
+      load.values.begin()[*axial] +=
+        space.scene.axial_force->value(Point<dim>(), t) / space.axial_length;
     return load;
   }
 

@@ -175,10 +175,11 @@ namespace Viscoplastic
     using CellIterator        = typename Triangulation<dim>::cell_iterator;
     const auto &triangulation = space.dof_handler.get_triangulation();
     const VertexNodes<dim> nodes(space);
-    const std::size_t      n_owned = space.owned.n_elements() / dim;
+    const std::size_t n_owned = space.dof_handler.n_locally_owned_dofs() / dim;
 
     NodeHierarchy hierarchy;
-    hierarchy.n_levels = triangulation.n_global_levels();
+    hierarchy.end_of_mesh = space.dof_handler.n_dofs() / dim;
+    hierarchy.n_levels    = triangulation.n_global_levels();
     hierarchy.begin =
       n_owned > 0 ? space.owned.nth_index_in_set(0) / dim : Node(0);
     hierarchy.end = hierarchy.begin + n_owned;

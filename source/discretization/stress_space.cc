@@ -94,8 +94,9 @@ namespace Viscoplastic
                             const double          *u,
                             SymmetricTensor<2, 3> *strain) const
   {
-    const unsigned int *node = &nodes[cell * n_vertices];
-    double              mean = 0., values[n_vertices][dim];
+    const unsigned int *node  = &nodes[cell * n_vertices];
+    const double        axial = space.axial_strain(u);
+    double              mean  = 0., values[n_vertices][dim];
     for (unsigned int v = 0; v < n_vertices; ++v)
       for (unsigned int i = 0; i < dim; ++i)
         values[v][i] = u[node[v] + i];
@@ -108,7 +109,8 @@ namespace Viscoplastic
           for (unsigned int i = 0; i < dim; ++i)
             for (unsigned int j = 0; j < dim; ++j)
               gradient[i][j] += values[v][i] * g[v][j];
-        strain[s] = 0.;
+        strain[s]       = 0.;
+        strain[s][2][2] = axial;
         for (unsigned int i = 0; i < dim; ++i)
           for (unsigned int j = i; j < dim; ++j)
             strain[s][i][j] = 0.5 * (gradient[i][j] + gradient[j][i]);
@@ -162,6 +164,8 @@ namespace Viscoplastic
           around = weighted *
                    (stress[s][2][2] +
                     (mean_pressure ? pressure - trace(stress[s]) / 3. : 0.));
+        if (space.axial)
+          load[*space.axial] += weighted * stress[s][2][2] / space.axial_length;
         for (unsigned int i = 0; i < dim; ++i)
           for (unsigned int j = 0; j < dim; ++j)
             acting[i][j] *= weighted;
@@ -203,7 +207,10 @@ namespace Viscoplastic
                       hoop(s * n_vertices + i / dim, i % dim)) *
                      weight(cell, s) / volumes[cell];
 
-    std::array<SymmetricTensor<2, 3>, n> strain;
+    // Also of the axial unknown.
+    const unsigned int                       n_all = n + (space.axial ? 1 : 0);
+    std::array<SymmetricTensor<2, 3>, n + 1> strain;
+    strain[n][2][2] = 1. / space.axial_length;
     for (unsigned int s = 0; s < n_samples; ++s, g += n_vertices)
       {
         for (unsigned int i = 0; i < n; ++i)
@@ -217,7 +224,7 @@ namespace Viscoplastic
             if (mean_pressure)
               strain[i] = with_dilatation(strain[i], mean[i]);
           }
-        for (unsigned int j = 0; j < n; ++j)
+        for (unsigned int j = 0; j < n_all; ++j)
           {
             const SymmetricTensor<2, 3> stress =
               tangent[s] * strain[j] * weight(cell, s);

@@ -150,9 +150,8 @@ namespace Viscoplastic
     const unsigned int          n            = stress_space.n_samples;
     tangent_matrix.copy_from(elastic_matrix);
 
-    const unsigned int n_dofs = space.dof_handler.get_fe().n_dofs_per_cell();
-    FullMatrix<double> cell_matrix(n_dofs, n_dofs);
-    std::vector<types::global_dof_index> dofs(n_dofs);
+    FullMatrix<double>                   cell_matrix;
+    std::vector<types::global_dof_index> dofs;
     std::vector<SymmetricTensor<4, 3>>   change(n);
     std::size_t                          index = 0;
     for (const auto &cell : space.cells)
@@ -167,9 +166,9 @@ namespace Viscoplastic
           }
         if (!flows)
           continue;
-        cell_matrix = 0.;
+        space.get_dofs(cell, dofs);
+        cell_matrix.reinit(dofs.size(), dofs.size());
         stress_space.add_stiffness(c, change.data(), cell_matrix);
-        cell->get_dof_indices(dofs);
         space.add_cell_matrix(dofs, cell_matrix, tangent_matrix);
       }
     tangent_matrix.compress(VectorOperation::add);

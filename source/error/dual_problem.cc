@@ -27,9 +27,12 @@ namespace Viscoplastic
     , quantity(quantity)
     , point_load(discretization.space.owned_vector())
   {
+    const AdmissibleSpace<dim> &space = discretization.space;
+    if (const auto axial = space.owned_axial();
+        axial && quantity.kind == QuantityOfInterest::Kind::axial_strain)
+      point_load.begin()[*axial] = 1. / space.axial_length;
     if (quantity.kind != QuantityOfInterest::Kind::displacement)
       return;
-    const AdmissibleSpace<dim> &space = discretization.space;
     probe.emplace(space, space.scene.output_points[quantity.number]);
     std::vector<double> cartesian(space.relevant.n_elements());
     probe->add_force(Point<dim>::unit_vector(quantity.component), cartesian);
@@ -102,12 +105,15 @@ namespace Viscoplastic
           }
         case QuantityOfInterest::Kind::reaction:
           return reactions(discretization.space, forces).at(quantity.number)[d];
+        case QuantityOfInterest::Kind::axial_force:
+          return axial_force(discretization.space, forces);
         default:
           {
-            DistributedVector difference;
-            return probe->value(reported_displacement(discretization.scene(),
-                                                      state,
-                                                      difference))[d];
+            DistributedVector        difference;
+            const DistributedVector &u =
+              reported_displacement(discretization.scene(), state, difference);
+            return probe ? probe->value(u)[d] :
+                           discretization.space.axial_strain(u.begin());
           }
       }
   }
@@ -167,6 +173,9 @@ namespace Viscoplastic
           for (unsigned int i = 0; i < frame.n_fixed; ++i)
             w.begin()[first + frame.fixed[i]] = value[i];
         }
+    if (const auto axial = space.owned_axial();
+        axial && quantity.kind == QuantityOfInterest::Kind::axial_force)
+      w.begin()[*axial] = space.axial_length;
     const ContactFace<dim> *face = discretization.slipping_face();
     const bool              is_contact_force =
       quantity.kind == QuantityOfInterest::Kind::contact_force;

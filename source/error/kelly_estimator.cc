@@ -70,10 +70,12 @@ namespace Viscoplastic
         values.reinit(cell);
         values[displacement].get_function_values(ghosted_u, u);
         values[displacement].get_function_gradients(ghosted_u, gradient);
-        const SymmetricTensor<2, 3> e = strain(u[0],
-                                               gradient[0],
-                                               values.quadrature_point(0),
-                                               space.scene.plane_model());
+        const SymmetricTensor<2, 3> e =
+          strain(u[0],
+                 gradient[0],
+                 values.quadrature_point(0),
+                 space.scene.plane_model(),
+                 space.axial_strain(ghosted_u.begin()));
         sum += (e * e) * values.JxW(0);
       }
     return std::sqrt(Utilities::MPI::sum(sum, space.communicator));

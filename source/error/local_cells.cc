@@ -144,6 +144,7 @@ namespace Viscoplastic
     for (unsigned int v = 0; v < n_vertices; ++v)
       for (unsigned int d = 0; d < dim; ++d)
         result[v][d] = u[cell.nodes[v] + d];
+    result.axial_strain = stress_space.space.axial_strain(u);
     return result;
   }
 
@@ -156,7 +157,7 @@ namespace Viscoplastic
   {
     const Shape &shape = shapes[cell.shape];
     return strain(gradient(displacements, shape.mean_gradients),
-                  has_hoops ? hoop(displacements, shape.mean_hoops) : 0.);
+                  strain_zz(displacements, shape.mean_hoops));
   }
 
 
@@ -170,7 +171,7 @@ namespace Viscoplastic
     std::array<SymmetricTensor<2, 3>, n_points> result;
     for (unsigned int q = 0; q < n_points; ++q)
       result[q] = strain(gradient(displacements, shape.gradients[q]),
-                         has_hoops ? hoop(displacements, shape.hoops[q]) : 0.);
+                         strain_zz(displacements, shape.hoops[q]));
     if (stress_space.mean_dilatation)
       {
         const double dilatation = trace(mean_strain(cell, displacements));

@@ -69,7 +69,8 @@ namespace Viscoplastic
     using Kind = QuantityOfInterest::Kind;
     return scene.has_viscosity() && scene.quantity &&
            (scene.quantity->kind == Kind::displacement ||
-            scene.quantity->kind == Kind::reaction);
+            scene.quantity->kind == Kind::axial_strain ||
+            scene.quantity->is_reaction());
   }
 
 

@@ -27,7 +27,7 @@ namespace Viscoplastic
   {
     template <int dim>
     std::vector<unsigned int>
-    components_of_strains(const bool has_hoops)
+    components_of_strains(const bool has_zz)
     {
       std::vector<unsigned int> result;
       for (unsigned int i = 0; i < 6; ++i)
@@ -35,7 +35,7 @@ namespace Viscoplastic
           const TableIndices<2> index =
             SymmetricTensor<2, 3>::unrolled_to_component_indices(i);
           if ((index[0] < dim && index[1] < dim) ||
-              (has_hoops && index[0] == 2 && index[1] == 2))
+              (has_zz && index[0] == 2 && index[1] == 2))
             result.push_back(i);
         }
       return result;
@@ -47,7 +47,8 @@ namespace Viscoplastic
   template <int dim>
   RecoveryEstimator<dim>::RecoveryEstimator(const LocalCells<dim> &cells)
     : local(cells)
-    , components(components_of_strains<dim>(cells.has_hoops))
+    , components(components_of_strains<dim>(cells.has_hoops ||
+                                            cells.stress_space.space.axial))
     , fe(FE_Q<dim>(1), components.size())
     , dof_handler(cells.stress_space.space.dof_handler.get_triangulation())
   {
@@ -318,7 +319,7 @@ namespace Viscoplastic
     const auto  &shape = local.shapes[cell.shape];
     for (unsigned int q = 0; q < n_points; ++q)
       result[q] = (trace(local.gradient(nodal, shape.gradients[q])) +
-                   local.hoop(nodal, shape.hoops[q]) - mean) /
+                   local.strain_zz(nodal, shape.hoops[q]) - mean) /
                   3. * unit_symmetric_tensor<3>();
     return result;
   }

@@ -20,7 +20,7 @@ namespace Viscoplastic
 
     /// Begins a file of samples, and says of which dimension and version.
     template <int dim>
-    constexpr double magic_number = 7.25e9 + dim;
+    constexpr double magic_number = 7.26e9 + dim;
 
 
 
@@ -88,7 +88,7 @@ namespace Viscoplastic
     {
     public:
       explicit MeanDilatation(const AdmissibleSpace<dim> &space)
-        : plane_model(space.scene.plane_model())
+        : space(space)
         , values(space.mapping,
                  space.dof_handler.get_fe(),
                  QGauss<dim>(2),
@@ -107,13 +107,16 @@ namespace Viscoplastic
         values[displacement].get_function_values(ghosted_u, u);
         values[displacement].get_function_gradients(ghosted_u, gradients);
         for (unsigned int q = 0; q < strains.size(); ++q)
-          strains[q] =
-            strain(u[q], gradients[q], values.quadrature_point(q), plane_model);
+          strains[q] = strain(u[q],
+                              gradients[q],
+                              values.quadrature_point(q),
+                              space.scene.plane_model(),
+                              space.axial_strain(ghosted_u.begin()));
         return mean_dilatation(values.get_JxW_values(), strains);
       }
 
     private:
-      const PlaneModel                   plane_model;
+      const AdmissibleSpace<dim>        &space;
       FEValues<dim>                      values;
       std::vector<Tensor<1, dim>>        u;
       std::vector<Tensor<2, dim>>        gradients;
@@ -171,10 +174,12 @@ namespace Viscoplastic
                   for (unsigned int e = 0; e < dim; ++e)
                     g[d][e] = sample[Samples::gradient_index + d * dim + e];
                 }
-              const Point<dim> x     = position<dim>(sample);
-              const PlaneModel model = space.scene.plane_model();
-              auto             exact = strain(u, g, x, model),
-                   ours = strain(values[q], gradients[q], x, model);
+              auto exact = strain(g, sample[Samples::zz_index]),
+                   ours  = strain(values[q],
+                                 gradients[q],
+                                 position<dim>(sample),
+                                 space.scene.plane_model(),
+                                 space.axial_strain(state.u.begin()));
               if (stress_space.mean_dilatation)
                 {
                   exact =
@@ -320,17 +325,21 @@ namespace Viscoplastic
         fe_values.reinit(cell);
         fe_values[displacement].get_function_values(state.u, values);
         fe_values[displacement].get_function_gradients(state.u, gradients);
+        const SymmetricTensor<2, 3> at_center =
+          strain(values[0],
+                 gradients[0],
+                 fe_values.quadrature_point(0),
+                 space.scene.plane_model(),
+                 space.axial_strain(state.u.begin()));
         const double dilatation = stress_space.mean_dilatation ?
                                     mean_dilatation(cell, state.u) :
-                                    trace(strain(values[0],
-                                                 gradients[0],
-                                                 fe_values.quadrature_point(0),
-                                                 space.scene.plane_model()));
+                                    trace(at_center);
         for (const unsigned int q : fe_values.quadrature_point_indices())
           {
             typename Samples::CellPoint sample;
             sample[dim]                       = fe_values.JxW(q);
             sample[Samples::dilatation_index] = dilatation;
+            sample[Samples::zz_index]         = at_center[2][2];
             for (unsigned int d = 0; d < dim; ++d)
               {
                 sample[d]                    = fe_values.quadrature_point(q)[d];

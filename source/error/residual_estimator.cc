@@ -103,6 +103,7 @@ namespace Viscoplastic
                 const double share = of_stress / of_strain;
                 for (Tensor<1, dim> &u : terms.u)
                   u *= share;
+                terms.u.axial_strain *= share;
                 terms.dilatation *= share;
                 z += (1. - share) * elastic;
               }
@@ -134,11 +135,10 @@ namespace Viscoplastic
           for (unsigned int i = 0; i < dim; ++i)
             for (unsigned int j = 0; j < dim; ++j)
               gradient[i][j] += terms.u[v][i] * face.gradients[q][v][j];
-        const double hoop =
-          local.has_hoops ? local.hoop(terms.u, face.hoops[q]) : 0.;
+        const double zz = local.strain_zz(terms.u, face.hoops[q]);
         if (stiffness.is_isotropic())
           {
-            const double divergence = trace(gradient) + hoop;
+            const double divergence = trace(gradient) + zz;
             const double pressure =
               mean_dilatation ?
                 bulk * terms.dilatation - 2. / 3. * mu * divergence :
@@ -154,7 +154,7 @@ namespace Viscoplastic
           }
         else
           {
-            const SymmetricTensor<2, 3> here = strain(gradient, hoop);
+            const SymmetricTensor<2, 3> here = strain(gradient, zz);
             tractions[q] =
               terms.z * normal +
               in_plane(stiffness.stress(

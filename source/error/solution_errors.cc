@@ -54,7 +54,8 @@ namespace Viscoplastic
             strains[q] = strain(values[q],
                                 gradients[q],
                                 fe_values.quadrature_point(q),
-                                space.scene.plane_model());
+                                space.scene.plane_model(),
+                                space.axial_strain(state.u.begin()));
           if (stress_space.mean_dilatation)
             {
               const double mean =

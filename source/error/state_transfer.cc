@@ -55,7 +55,11 @@ namespace Viscoplastic
     std::vector<const DistributedVector *> present;
     for (const DistributedVector &field : old_fields)
       if (field.size() > 0)
-        present.push_back(&field);
+        {
+          present.push_back(&field);
+          if (const auto axial = old_stress_space.space.axial)
+            old_axial.push_back(field.begin()[*axial]);
+        }
     field_transfer.prepare_for_coarsening_and_refinement(present);
 
     // A rank without cells has empty fields in every scene.
@@ -195,6 +199,8 @@ namespace Viscoplastic
       if (old_fields[i].size() > 0)
         {
           space.distribute_hanging_nodes(fields[next]);
+          if (const auto axial = space.owned_axial())
+            fields[next].begin()[*axial] = old_axial[next];
           *targets[i] = space.ghosted_vector();
           *targets[i] = fields[next++];
         }

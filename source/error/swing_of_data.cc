@@ -35,6 +35,7 @@ namespace Viscoplastic
     loads_depend_on_time(const Scene<dim> &scene)
     {
       return (scene.body_force && scene.body_force->depends_on_time()) ||
+             (scene.axial_force && scene.axial_force->depends_on_time()) ||
              std::any_of(scene.boundary.begin(),
                          scene.boundary.end(),
                          [](const auto &pair) {
@@ -52,16 +53,20 @@ namespace Viscoplastic
       const auto varies = [](const auto &datum) {
         return datum && datum->depends_on_time();
       };
-      return std::any_of(
-        scene.boundary.begin(), scene.boundary.end(), [&](const auto &pair) {
-          const BoundaryCondition<dim> &condition = pair.second;
-          return std::any_of(condition.displacement.begin(),
-                             condition.displacement.end(),
-                             varies) ||
-                 (condition.constrains() &&
-                  (varies(condition.foundation_displacement) ||
-                   (condition.is_glued() && condition.foundation_motion)));
-        });
+      return varies(scene.axial_strain) ||
+             std::any_of(scene.boundary.begin(),
+                         scene.boundary.end(),
+                         [&](const auto &pair) {
+                           const BoundaryCondition<dim> &condition =
+                             pair.second;
+                           return std::any_of(condition.displacement.begin(),
+                                              condition.displacement.end(),
+                                              varies) ||
+                                  (condition.constrains() &&
+                                   (varies(condition.foundation_displacement) ||
+                                    (condition.is_glued() &&
+                                     condition.foundation_motion)));
+                         });
     }
 
 

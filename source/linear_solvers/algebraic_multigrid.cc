@@ -11,12 +11,12 @@ namespace Viscoplastic
 {
   AlgebraicMultigrid::AlgebraicMultigrid(
     const DistributedMatrix       &matrix,
-    const std::vector<bool>       &excluded,
+    std::vector<bool>              excluded_,
     std::vector<DistributedVector> rigid_body_modes_,
     const FaceRestriction         &restriction,
     const unsigned int             dim)
     : matrix(matrix)
-    , excluded(excluded)
+    , excluded(std::move(excluded_))
     , rigid_body_modes(std::move(rigid_body_modes_))
     , restriction(restriction)
     , face(restriction.face())

@@ -56,12 +56,17 @@ namespace Viscoplastic
                                         make_geometric<3>(system, demand);
           break;
         case BulkSolverKind::algebraic_multigrid:
-          multigrid =
-            std::make_unique<AlgebraicMultigrid>(matrix,
-                                                 system.excluded,
-                                                 system.rigid_body_modes(),
-                                                 system.face,
-                                                 system.dim);
+          {
+            // What couples with everything is solved for by itself.
+            std::vector<bool> apart(system.excluded);
+            std::fill_n(apart.rbegin(), system.n_beyond_mesh, true);
+            multigrid =
+              std::make_unique<AlgebraicMultigrid>(matrix,
+                                                   std::move(apart),
+                                                   system.rigid_body_modes(),
+                                                   system.face,
+                                                   system.dim);
+          }
       }
     return std::make_unique<KrylovSolver>(matrix,
                                           system.excluded,

@@ -70,7 +70,7 @@ namespace Viscoplastic
     for (int c = 0; c < n_columns; ++c)
       {
         const Node dof = K.GCID(c);
-        if (dof % dim != 0)
+        if (dof % dim != 0 || dof / dim >= hierarchy.end_of_mesh)
           continue;
         first_of[c] = dof / dim;
         for (unsigned int j = 0; j < dim; ++j)

@@ -212,7 +212,8 @@ namespace Viscoplastic
       return n_blocks[1] <= largest_shared_part * n_blocks[0];
     };
     // What differs in single precision does so in double precision, too.
-    if (!has_four_doubles() || !is_shared(level.matrix_rows()))
+    if (!has_four_doubles() || hierarchy.end_of_mesh * dim < matrix.m() ||
+        !is_shared(level.matrix_rows()))
       return;
     auto result = std::make_unique<Operator>();
     result->rows.set_values(matrix_rows,
@@ -337,6 +338,12 @@ namespace Viscoplastic
         for (unsigned int d = 0; d < dim; ++d)
           to[d] = u[i * dim + d] / (scale * unit);
       }
+    // Unknowns beyond the mesh, by themselves.
+    for (std::size_t i = hierarchy.first_level.size() * dim;
+         i < excluded.size();
+         ++i)
+      y.begin()[i] =
+        x.begin()[i] / matrix.diag_element(matrix.local_range().first + i);
   }
 
 

@@ -34,7 +34,9 @@ namespace Viscoplastic
       "Plane model",
       plane_model,
       "What a mesh in 2D stands for. `strain': a slice of a long body, plane "
-      "strain. `axisymmetric': the section of a body of revolution about the "
+      "strain. `generalized strain': the same with a strain zz that is one for "
+      "the whole section, given by `Loads/Axial strain' or the unknown that "
+      "belongs to `Loads/Axial force'. `axisymmetric': the section of a body of revolution about the "
       "axis x = 0, with x = r >= 0 and y along the axis, u_theta = 0; a "
       "boundary on the axis has the role symmetry. Stresses and strains zz "
       "are those around the axis then, and forces, energies, areas and "
@@ -224,6 +226,15 @@ namespace Viscoplastic
     prm.add_parameter("Body force",
                       body_force,
                       "b(x,t). Unit: force per volume.");
+    prm.add_parameter("Axial force",
+                      axial_force,
+                      "N(t), the integral of the stress zz over the section in "
+                      "the plane model `generalized strain', whose strain zz "
+                      "follows; empty for 0. Unit: force.");
+    prm.add_parameter("Axial strain",
+                      axial_strain,
+                      "In the place of `Axial force': the strain zz as a "
+                      "function of t. Unit: 1.");
   }
 
 

@@ -190,6 +190,17 @@ namespace Viscoplastic
                      Quantity::force,
                      AtEnd::printed);
     row.add_vector("load", forces.load.resultant, dim, Quantity::force);
+    if (d.space.axial)
+      {
+        row.add("axial_strain",
+                quantities.axial_strain,
+                Quantity::pure_number,
+                AtEnd::printed);
+        row.add("axial_force",
+                quantities.axial_force,
+                Quantity::axial_force,
+                AtEnd::printed);
+      }
     row.add("force_balance_defect", balance_defect(quantities));
     if (d.face)
       {

@@ -103,10 +103,13 @@ namespace Viscoplastic
     result.stress = summarize_stress(d.laws, old.state, state);
     result.stored_energy =
       stored_energy(forces, result.stress) + energy_of_foundation(d, state);
-    DistributedVector       difference;
-    const LargestPlace<dim> largest =
-      largest_displacement(d.space,
-                           reported_displacement(d.scene(), state, difference));
+    DistributedVector        difference;
+    const DistributedVector &u =
+      reported_displacement(d.scene(), state, difference);
+    const LargestPlace<dim> largest = largest_displacement(d.space, u);
+    result.axial_strain             = d.space.axial_strain(u.begin());
+    if (d.space.axial)
+      result.axial_force = axial_force(d.space, forces);
     result.max_displacement      = largest.value();
     result.displacement_position = largest.position();
     if (d.face)

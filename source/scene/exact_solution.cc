@@ -43,8 +43,13 @@ namespace Viscoplastic
                 ExcMessage("'Exact solution/Displacement' is missing, but "
                            "other entries of that section are given."));
     given_displacement.emplace(parameters.displacement,
-                               dim,
+                               dim + (is_generalized() ? 1 : 0),
                                "Exact solution/Displacement");
+    AssertThrow(!is_generalized() ||
+                  !(*given_displacement)[dim].depends_on_position(),
+                ExcMessage("The last component of 'Exact solution/"
+                           "Displacement', eps_zz, depends on the place, but "
+                           "it is one for the whole section."));
     if (!Utilities::trim(parameters.stress).empty())
       given_stress.emplace(parameters.stress,
                            stress_components<dim>().size(),
@@ -101,10 +106,8 @@ namespace Viscoplastic
   SymmetricTensor<2, 3>
   ExactSolution<dim>::strain(const Point<dim> &x, const double t) const
   {
-    return Viscoplastic::strain(displacement(x, t),
-                                gradient(x, t),
-                                x,
-                                plane_model);
+    return Viscoplastic::strain(
+      displacement(x, t), gradient(x, t), x, plane_model, axial_strain(t));
   }
 
 

@@ -337,6 +337,9 @@ namespace Viscoplastic
             "in time, which it does not; 'Foundation displacement' moves the "
             "foundation in normal direction.");
       }
+    for (const auto *datum : {&scene.axial_force, &scene.axial_strain})
+      if (*datum && (*datum)->depends_on_time())
+        inspect(**datum, {Point<dim>()});
     if (scene.body_force && scene.body_force->depends_on_time())
       {
         const auto places = places_in_body(triangulation);

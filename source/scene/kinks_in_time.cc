@@ -270,6 +270,9 @@ namespace Viscoplastic
       for (const Expression<dim> *datum : condition.data())
         if (datum->may_have_kinks())
           inspect(*datum, places_on_boundary(triangulation, id));
+    for (const auto *datum : {&scene.axial_force, &scene.axial_strain})
+      if (*datum && (*datum)->may_have_kinks())
+        inspect(**datum, {Point<dim>()});
     if (scene.body_force)
       for (unsigned int d = 0; d < dim; ++d)
         if ((*scene.body_force)[d].may_have_kinks())

@@ -11,7 +11,8 @@ namespace Viscoplastic
   quantity_of_interest(
     const std::string                                          &column,
     const std::map<types::boundary_id, BoundaryCondition<dim>> &boundary,
-    const unsigned int                                          n_points)
+    const unsigned int                                          n_points,
+    const std::optional<QuantityOfInterest::Kind>               of_section)
   {
     using Kind = QuantityOfInterest::Kind;
     std::vector<QuantityOfInterest> known;
@@ -41,6 +42,13 @@ namespace Viscoplastic
     for (unsigned int i = 0; i < n_points; ++i)
       add(Kind::displacement, i, "point" + std::to_string(i));
 
+    if (of_section)
+      known.push_back(
+        {*of_section,
+         0,
+         0,
+         *of_section == Kind::axial_force ? "axial_force" : "axial_strain"});
+
     std::string names;
     for (const QuantityOfInterest &quantity : known)
       {
@@ -65,10 +73,12 @@ namespace Viscoplastic
   quantity_of_interest<2>(
     const std::string &,
     const std::map<types::boundary_id, BoundaryCondition<2>> &,
-    const unsigned int);
+    const unsigned int,
+    const std::optional<QuantityOfInterest::Kind>);
   template QuantityOfInterest
   quantity_of_interest<3>(
     const std::string &,
     const std::map<types::boundary_id, BoundaryCondition<3>> &,
-    const unsigned int);
+    const unsigned int,
+    const std::optional<QuantityOfInterest::Kind>);
 } // namespace Viscoplastic

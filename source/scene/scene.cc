@@ -54,8 +54,10 @@ namespace Viscoplastic
         make_temperature<dim>(parameters.temperature, parameters.units))
   {
     AssertThrow(dim == 2 || plane_model() == PlaneModel::strain,
-                ExcMessage("'Geometry/Plane model' = axisymmetric is that of "
-                           "meshes in 2D, but 'Dimension' = 3."));
+                ExcMessage(
+                  "'Geometry/Plane model' = " + name_of(plane_model()) +
+                  " is that of meshes in 2D, but 'Dimension' = 3."));
+    read_axial_datum();
     const ExactSolution<dim> *source_of_data =
       exact_solution && exact_solution->makes_data ? exact_solution.get() :
                                                      nullptr;
@@ -72,10 +74,44 @@ namespace Viscoplastic
     output_lines                   = read_output_lines<dim>(output.lines);
     output_integrals = read_output_integrals(output.integrals, names);
     if (!parameters.error_control.quantity.empty())
-      quantity =
-        quantity_of_interest(names.column(parameters.error_control.quantity),
-                             boundary,
-                             output_points.size());
+      quantity = quantity_of_interest(
+        names.column(parameters.error_control.quantity),
+        boundary,
+        output_points.size(),
+        axial_force  ? std::optional(QuantityOfInterest::Kind::axial_strain) :
+        axial_strain ? std::optional(QuantityOfInterest::Kind::axial_force) :
+                       std::nullopt);
+  }
+
+
+
+  template <int dim>
+  void
+  Scene<dim>::read_axial_datum()
+  {
+    const auto read = [&](const std::string &text, const std::string &name) {
+      const std::string              entry = "Loads/" + name;
+      std::optional<Expression<dim>> result;
+      if (Utilities::trim(text).empty())
+        return result;
+      AssertThrow(is_generalized(),
+                  ExcMessage("'" + entry +
+                             "' is that of 'Geometry/Plane "
+                             "model' = generalized strain."));
+      result.emplace(text, entry);
+      AssertThrow(!result->depends_on_position(),
+                  ExcMessage("'" + entry + "' = " + text +
+                             " depends on the place, but it is one for the "
+                             "whole section."));
+      return result;
+    };
+    axial_force  = read(parameters.loads.axial_force, "Axial force");
+    axial_strain = read(parameters.loads.axial_strain, "Axial strain");
+    AssertThrow(!axial_force || !axial_strain,
+                ExcMessage("'Loads/Axial force' and 'Loads/Axial strain' "
+                           "follow from each other; leave one of them out."));
+    if (is_generalized() && !axial_strain && !axial_force)
+      axial_force.emplace("0", "Loads/Axial force");
   }
 
 
@@ -151,6 +187,8 @@ namespace Viscoplastic
   {
     for (const auto &[name, text] :
          {std::make_pair("Loads/Body force", parameters.loads.body_force),
+          std::make_pair("Loads/Axial force", parameters.loads.axial_force),
+          std::make_pair("Loads/Axial strain", parameters.loads.axial_strain),
           std::make_pair("Initial state/Displacement",
                          parameters.initial_state.displacement),
           std::make_pair("Initial state/Stress",
@@ -178,6 +216,15 @@ namespace Viscoplastic
         return solution.body_force(x, t);
       },
       stress);
+    if (is_generalized())
+      {
+        axial_force.reset();
+        axial_strain.emplace(
+          [&solution](const Point<dim> &, const double t) {
+            return solution.axial_strain(t);
+          },
+          displacement);
+      }
     initial_displacement.emplace(
       [&solution](const Point<dim> &x, const double t) {
         return solution.displacement(x, t);
@@ -236,6 +283,7 @@ namespace Viscoplastic
           condition.has_computed_pressure())
         return false;
     return !(body_force && body_force->depends_on_time()) &&
+           !(axial_force && axial_force->depends_on_time()) &&
            !(temperature && temperature->value.depends_on_time());
   }
 
@@ -349,10 +397,11 @@ namespace Viscoplastic
   std::vector<std::string>
   Scene<dim>::effects() const
   {
-    std::vector<std::string> result{is_axisymmetric() ?
-                                      "elasticity (axisymmetric)" :
-                                    dim == 2 ? "elasticity (plane strain)" :
-                                               "elasticity (3D)"};
+    std::vector<std::string> result{
+      is_axisymmetric() ? "elasticity (axisymmetric)" :
+      is_generalized()  ? "elasticity (generalized plane strain)" :
+      dim == 2          ? "elasticity (plane strain)" :
+                          "elasticity (3D)"};
     const std::string history  = name_of(parameters.stress.stress_history),
                       pressure = "the computed pressure";
     for (const auto &material : materials)

@@ -80,6 +80,7 @@ namespace Viscoplastic
     velocity,
     stress,
     force,         // 2D: by length
+    axial_force,   // of a whole section
     energy,        // 2D: by length
     work_per_area, // energy by area
     energy_norm,   // energy^1/2

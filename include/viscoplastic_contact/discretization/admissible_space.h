@@ -13,6 +13,7 @@
 #include <array>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -74,6 +75,14 @@ namespace Viscoplastic
     /// Relevant are those at owned cells and their neighbors, and opposite of
     /// them.
     const IndexSet owned, relevant;
+    /// The position among the relevant ones of one more unknown, where there
+    /// is: eps_zz axial_length in generalized plane strain, by how much a slice
+    /// of the length axial_length becomes longer. It is the first component of
+    /// a node of no mesh, behind all others; the second one is no unknown. The
+    /// last rank owns it, and it is relevant to all.
+    const std::optional<std::size_t> axial;
+    /// The size of the body, the same on all its meshes.
+    const double axial_length;
 
     /// The owned cells, in the order of owned_cells(): that of all data that
     /// have values in cells.
@@ -94,6 +103,28 @@ namespace Viscoplastic
     {
       return needs_springs;
     }
+
+    /// eps_zz of a displacement, by the local array of a ghosted vector.
+    double
+    axial_strain(const double *u) const
+    {
+      return axial ? u[*axial] / axial_length : 0.;
+    }
+
+    /// The position of that unknown among the owned ones, if it is.
+    std::optional<std::size_t>
+    owned_axial() const
+    {
+      if (axial && owned.is_element(dof_handler.n_dofs()))
+        return *axial - first_owned;
+      return {};
+    }
+
+    /// The degrees of freedom that the form couples in a cell: those of its
+    /// nodes, and the axial ones.
+    void
+    get_dofs(const typename DoFHandler<dim>::active_cell_iterator &cell,
+             std::vector<types::global_dof_index>                 &dofs) const;
 
     /// Degrees of freedom on the mesh that this one is refined from; 0 where it
     /// is not refined. The same on all ranks.
@@ -324,7 +355,7 @@ namespace Viscoplastic
     std::vector<bool>         is_excluded;
     /// Owned entries of hanging nodes, by local position.
     std::vector<std::size_t> hanging_entries;
-    /// Support point of each owned node.
+    /// Support point of each owned node of the mesh.
     std::vector<Point<dim>> node_position;
 
     std::vector<Coupling> couplings;

@@ -18,6 +18,7 @@ namespace Viscoplastic
             space.excluded(),
             [&space] { return space.rigid_body_modes(); },
             [&space] { return make_node_hierarchy(space); },
-            face};
+            face,
+            space.owned_axial() ? dim : 0u};
   }
 } // namespace Viscoplastic

@@ -64,7 +64,9 @@ namespace Viscoplastic
   /**
    * The same form for one cell: strains of the shape functions at the points
    * of @p fe_values against each other, with hoop strains of rings. Declared
-   * here for the tests of its coercivity.
+   * here for the tests of its coercivity. A matrix with a node more than the
+   * cell has, in generalized plane strain, also has what @p axial_strain as
+   * that of its first component makes.
    */
   template <int dim>
   void
@@ -72,5 +74,6 @@ namespace Viscoplastic
                       const Stiffness     &stiffness,
                       const bool           mean_dilatation,
                       FullMatrix<double>  &cell_matrix,
-                      const PlaneModel     plane_model = PlaneModel::strain);
+                      const PlaneModel     plane_model  = PlaneModel::strain,
+                      const double         axial_strain = 0.);
 } // namespace Viscoplastic

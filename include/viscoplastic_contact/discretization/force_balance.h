@@ -58,6 +58,12 @@ namespace Viscoplastic
   std::map<types::boundary_id, Tensor<1, dim>>
   reactions(const AdmissibleSpace<dim> &space, const Forces<dim> &forces);
 
+  /// The integral of sigma_zz over the section, in generalized plane strain.
+  /// Collective.
+  template <int dim>
+  double
+  axial_force(const AdmissibleSpace<dim> &space, const Forces<dim> &forces);
+
   /**
    * Work by prescribed displacements and loads between two states, with mean
    * forces (trapezoidal rule). Collective.

@@ -30,6 +30,9 @@ namespace Viscoplastic
    * of V_h, projected, so that the time loop needs no FEValues: 2^dim (dim +
    * 1/2) doubles a sample.
    *
+   * In generalized plane strain the strain has zz of the whole section, which
+   * stresses work on, too.
+   *
    * With mean dilatation, the strain has the volumetric part of its cell mean
    * and stresses act on such strains, as in the elastic form.
    */
@@ -90,7 +93,7 @@ namespace Viscoplastic
                      double                      *load) const;
 
     /// Add int C eps(u) : eps(v) with C at each sample to the matrix of a cell,
-    /// Cartesian, in the order of the cell's degrees of freedom. Strains and
+    /// Cartesian, in the order of AdmissibleSpace::get_dofs(). Strains and
     /// virtual work are those of the functions above. @p tangent: symmetric.
     void
     add_stiffness(const std::size_t            cell,

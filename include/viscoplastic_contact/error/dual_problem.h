@@ -98,7 +98,7 @@ namespace Viscoplastic
     double
     sign() const
     {
-      return quantity.kind == QuantityOfInterest::Kind::reaction ? -1. : 1.;
+      return quantity.is_reaction() ? -1. : 1.;
     }
 
   private:

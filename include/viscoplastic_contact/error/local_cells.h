@@ -25,12 +25,19 @@ namespace Viscoplastic
                                   n_faces       = 2 * dim,
                                   n_face_points = 1u << (dim - 1);
 
-    using NodalValues  = std::array<Tensor<1, dim>, n_vertices>;
+    using Gradients    = std::array<Tensor<1, dim>, n_vertices>;
     using CellIterator = typename DoFHandler<dim>::active_cell_iterator;
+
+    /// The values of a field at the vertices, and its strain zz if that is one
+    /// for the whole section.
+    struct NodalValues : std::array<Tensor<1, dim>, n_vertices>
+    {
+      double axial_strain = 0.;
+    };
 
     /// The gradient of a field with these values at the vertices.
     static Tensor<2, dim>
-    gradient(const NodalValues &values, const NodalValues &shape_gradients)
+    gradient(const NodalValues &values, const Gradients &shape_gradients)
     {
       Tensor<2, dim> result;
       for (unsigned int v = 0; v < n_vertices; ++v)
@@ -42,12 +49,12 @@ namespace Viscoplastic
     /// u_r/r of u_r = 1 at each vertex; zero but in bodies of revolution.
     using Hoops = std::array<double, n_vertices>;
 
-    /// u_r/r of a field with these values at the vertices.
-    static double
-    hoop(const NodalValues &values, const Hoops &hoops)
+    /// The strain zz of a field with these values: u_r/r in rings.
+    double
+    strain_zz(const NodalValues &values, const Hoops &hoops) const
     {
-      double result = 0.;
-      for (unsigned int v = 0; v < n_vertices; ++v)
+      double result = values.axial_strain;
+      for (unsigned int v = 0; has_hoops && v < n_vertices; ++v)
         result += values[v][0] * hoops[v];
       return result;
     }
@@ -56,7 +63,7 @@ namespace Viscoplastic
     struct FaceShape
     {
       /// The gradients of the vertices' shape functions.
-      std::array<NodalValues, n_face_points>    gradients;
+      std::array<Gradients, n_face_points>      gradients;
       std::array<Tensor<1, dim>, n_face_points> normals;
       std::array<Tensor<1, dim>, n_face_points> positions; // from vertex 0
       std::array<double, n_face_points>         weights;
@@ -71,8 +78,8 @@ namespace Viscoplastic
     struct Shape
     {
       double                               diameter, volume;
-      NodalValues                          mean_gradients;
-      std::array<NodalValues, n_points>    gradients;
+      Gradients                            mean_gradients;
+      std::array<Gradients, n_points>      gradients;
       std::array<double, n_points>         weights;
       Hoops                                mean_hoops{};
       std::array<Hoops, n_points>          hoops{};

@@ -24,7 +24,8 @@ namespace Viscoplastic
     static constexpr unsigned int u_index          = dim + 1;
     static constexpr unsigned int gradient_index   = u_index + dim;
     static constexpr unsigned int dilatation_index = gradient_index + dim * dim;
-    static constexpr unsigned int stress_index     = dilatation_index + 1;
+    static constexpr unsigned int zz_index         = dilatation_index + 1;
+    static constexpr unsigned int stress_index     = zz_index + 1;
     using CellPoint = std::array<double, stress_index + n_stresses>;
 
     // x, weight, lambda.

@@ -83,6 +83,8 @@ namespace Viscoplastic
     /// The old nodal_fields() and the multiplier density; absent ones are
     /// empty.
     std::array<DistributedVector, 5> old_fields;
+    /// The entry at AdmissibleSpace::axial of each of them that is there.
+    std::vector<double> old_axial;
     parallel::distributed::SolutionTransfer<dim, DistributedVector>
       field_transfer;
 

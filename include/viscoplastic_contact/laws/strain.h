@@ -24,18 +24,18 @@ namespace Viscoplastic
   }
 
   /// The symmetric part of a displacement gradient as a 3D tensor; in a plane,
-  /// zz is @p hoop, u_r/r in bodies of revolution, and the rest of what has z
-  /// is zero.
+  /// zz is @p zz, u_r/r in bodies of revolution, and the rest of what has z is
+  /// zero.
   template <int dim>
   SymmetricTensor<2, 3>
-  strain(const Tensor<2, dim> &gradient, const double hoop = 0.)
+  strain(const Tensor<2, dim> &gradient, const double zz = 0.)
   {
     SymmetricTensor<2, 3> result;
     for (unsigned int i = 0; i < dim; ++i)
       for (unsigned int j = i; j < dim; ++j)
         result[i][j] = 0.5 * (gradient[i][j] + gradient[j][i]);
     if (dim == 2)
-      result[2][2] = hoop;
+      result[2][2] = zz;
     return result;
   }
 

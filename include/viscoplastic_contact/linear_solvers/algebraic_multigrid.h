@@ -31,7 +31,7 @@ namespace Viscoplastic
      * @p dim degrees of freedom a node.
      */
     AlgebraicMultigrid(const DistributedMatrix       &matrix,
-                       const std::vector<bool>       &excluded,
+                       std::vector<bool>              excluded,
                        std::vector<DistributedVector> rigid_body_modes,
                        const FaceRestriction         &restriction,
                        const unsigned int             dim);
@@ -84,7 +84,7 @@ namespace Viscoplastic
     make_damping();
 
     const DistributedMatrix       &matrix;
-    const std::vector<bool>       &excluded;
+    const std::vector<bool>        excluded;
     std::vector<DistributedVector> rigid_body_modes;
     const FaceRestriction         &restriction;
     const ContactLayout           &face;

@@ -26,6 +26,9 @@ namespace Viscoplastic
     std::function<NodeHierarchy()> hierarchy;
     /// The restriction to the contact face; empty without contact points.
     const FaceRestriction &face;
+    /// How many owned degrees of freedom at the end belong to no node of the
+    /// mesh.
+    unsigned int n_beyond_mesh = 0;
   };
 
 

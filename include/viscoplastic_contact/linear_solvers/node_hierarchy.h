@@ -32,6 +32,10 @@ namespace Viscoplastic
     /// Where the nodes of this rank begin, and the end.
     Node begin = 0, end = 0;
 
+    /// Where those of all ranks end: degrees of freedom of nodes beyond are no
+    /// displacements of the mesh.
+    Node end_of_mesh = numbers::invalid_dof_index;
+
     /// The first mesh that has each owned node; invalid_unsigned_int for
     /// hanging nodes, which are no unknowns of any mesh.
     std::vector<unsigned int> first_level;

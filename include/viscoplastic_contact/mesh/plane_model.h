@@ -68,17 +68,19 @@ namespace Viscoplastic
 
 
 
-  /// The strain of a displacement with this value and gradient at @p x.
+  /// The strain of a displacement with this value and gradient at @p x, and of
+  /// a section whose strain zz is @p axial.
   template <int dim>
   SymmetricTensor<2, 3>
   strain(const Tensor<1, dim> &displacement,
          const Tensor<2, dim> &gradient,
          const Point<dim>     &x,
-         const PlaneModel      model)
+         const PlaneModel      model,
+         const double          axial)
   {
     return strain(gradient,
-                  model == PlaneModel::strain ? 0. :
-                  x[0] > 0.                   ? displacement[0] / x[0] :
-                                                gradient[0][0]);
+                  model != PlaneModel::axisymmetric ? axial :
+                  x[0] > 0.                         ? displacement[0] / x[0] :
+                                                      gradient[0][0]);
   }
 } // namespace Viscoplastic

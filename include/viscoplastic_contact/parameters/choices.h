@@ -15,18 +15,19 @@ namespace Viscoplastic
   // Entries with a closed list of values. Each has an enumeration and
   // choices(), the names of its values in their order as in parameter files.
 
-  /// What a plane mesh stands for: a slice of a long body, or a section of a
-  /// body of revolution.
+  /// What a plane mesh stands for: a slice of a long body, whose strain along z
+  /// is zero or the same everywhere, or a section of a body of revolution.
   enum class PlaneModel
   {
     strain,
+    generalized_strain,
     axisymmetric
   };
 
   inline const char *
   choices(PlaneModel)
   {
-    return "strain|axisymmetric";
+    return "strain|generalized strain|axisymmetric";
   }
 
   enum class VolumetricIntegration

@@ -87,7 +87,7 @@ namespace Viscoplastic
 
   struct LoadParameters
   {
-    std::string body_force;
+    std::string body_force, axial_force, axial_strain;
 
     void
     declare(ParameterHandler &prm);

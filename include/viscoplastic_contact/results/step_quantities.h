@@ -44,6 +44,8 @@ namespace Viscoplastic
     /// The largest length of a displacement, and the node that has it.
     double     max_displacement = 0.;
     Point<dim> displacement_position;
+    /// eps_zz and N in generalized plane strain.
+    double axial_strain = 0., axial_force = 0.;
     /// The area on which bilateral contact pulls at the body.
     double tension_area = 0.;
     /// InterfaceSlide::largest(); zero without contact between bodies.

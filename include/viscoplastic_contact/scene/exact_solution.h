@@ -65,6 +65,16 @@ namespace Viscoplastic
     SymmetricTensor<2, 3>
     strain(const Point<dim> &x, const double t) const;
 
+    /// eps_zz of the section in generalized plane strain, given behind the
+    /// components of the displacement; 0 in other models.
+    double
+    axial_strain(const double t) const
+    {
+      return is_generalized() ?
+               given_displacement->value(Point<dim>(), t, dim) :
+               0.;
+    }
+
     SymmetricTensor<2, 3>
     stress(const Point<dim> &x, const double t) const;
 
@@ -105,6 +115,12 @@ namespace Viscoplastic
     stress_column(const Point<dim>  &x,
                   const double       t,
                   const unsigned int j) const;
+
+    bool
+    is_generalized() const
+    {
+      return dim == 2 && plane_model == PlaneModel::generalized_strain;
+    }
 
     std::optional<VectorExpression<dim>> given_displacement, given_stress;
     const Material<dim>                 *material = nullptr;

@@ -5,6 +5,7 @@
 #include <viscoplastic_contact/scene/boundary_condition.h>
 
 #include <map>
+#include <optional>
 #include <string>
 
 namespace Viscoplastic
@@ -22,7 +23,9 @@ namespace Viscoplastic
       contact_force, // of contact that opens
       friction_dissipation,
       reaction,
-      displacement // of a point of `Output/Points'
+      displacement, // of a point of `Output/Points'
+      axial_strain,
+      axial_force
     };
 
     Kind kind;
@@ -42,6 +45,8 @@ namespace Viscoplastic
     {
       return is_sum()                   ? Quantity::energy :
              kind == Kind::displacement ? Quantity::length :
+             kind == Kind::axial_strain ? Quantity::pure_number :
+             kind == Kind::axial_force  ? Quantity::axial_force :
                                           Quantity::force;
     }
 
@@ -49,16 +54,25 @@ namespace Viscoplastic
     is_force() const
     {
       return kind == Kind::friction_force || kind == Kind::contact_force ||
-             kind == Kind::reaction;
+             is_reaction();
+    }
+
+    /// Whether it is a force of what is prescribed.
+    bool
+    is_reaction() const
+    {
+      return kind == Kind::reaction || kind == Kind::axial_force;
     }
   };
 
   /// The quantity that @p column names. Throws ExcMessage if there is none in
-  /// a scene with these conditions and so many output points.
+  /// a scene with these conditions and so many output points, in which @p
+  /// of_section, if any, is a quantity.
   template <int dim>
   QuantityOfInterest
   quantity_of_interest(
     const std::string                                          &column,
     const std::map<types::boundary_id, BoundaryCondition<dim>> &boundary,
-    const unsigned int                                          n_points);
+    const unsigned int                                          n_points,
+    const std::optional<QuantityOfInterest::Kind>               of_section);
 } // namespace Viscoplastic

@@ -190,6 +190,13 @@ namespace Viscoplastic
       return dim == 2 && plane_model() == PlaneModel::axisymmetric;
     }
 
+    /// Whether the strain zz of a plane section is a datum or an unknown.
+    bool
+    is_generalized() const
+    {
+      return dim == 2 && plane_model() == PlaneModel::generalized_strain;
+    }
+
     bool
     has_springs() const;
 
@@ -276,6 +283,8 @@ namespace Viscoplastic
     /// b, u0, sigma0; absent where identically zero.
     std::optional<VectorExpression<dim>> body_force;
     std::optional<VectorExpression<dim>> initial_displacement, initial_stress;
+    /// N(t) or eps_zz(t): one of them in generalized plane strain.
+    std::optional<Expression<dim>> axial_force, axial_strain;
     /// T; null in scenes that give none.
     std::unique_ptr<const Temperature<dim>> temperature;
     /// What is recorded beside the fields, and where.
@@ -331,6 +340,10 @@ namespace Viscoplastic
     /// What follows from an exact solution, and refuse it from elsewhere.
     void
     derive_data();
+
+    /// N or eps_zz, of which at most one is given. Throws ExcMessage.
+    void
+    read_axial_datum();
 
     /// The other sides of contact between bodies.
     void

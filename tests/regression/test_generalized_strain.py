@@ -1,0 +1,289 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Generalized plane strain (`Geometry/Plane model` = generalized strain): one strain
+zz for the whole section, given or by its force, with closed forms, in plane strain
+and in 3D."""
+
+import numpy as np
+
+from harness import DEFECTS, EFFORT, TestCase, main, run
+
+E, NU = 2.0, 0.3
+SOLVERS = "direct", "multigrid", "algebraic multigrid"
+PRESSED = {"Role": "traction", "Pressure": "0.02*t"}
+SQUARE = ("symmetry", PRESSED, "symmetry", "free")
+# a block on a plane with Coulomb friction, which slips in part and creeps
+BLOCK = {
+    "Geometry/Boundary refinements": "2: 1",
+    "Material/Law": "norton",
+    "Material/norton/Rate factor": 20,
+    "Material/norton/Exponent": 3,
+    "Material/norton/Stress cap": 1,
+    "Time/Scheme": "backward Euler",
+    "Time/Phases": "1: 4",
+    "Boundary 3/Role": "traction",
+    "Boundary 3/Pressure": "0.05*t",
+    "Boundary 2/Role": "contact",
+    "Boundary 2/Contact law": "unilateral",
+    "Boundary 2/Friction law": "coulomb",
+    "Boundary 2/Friction coefficient": 0.2,
+}
+
+
+def section(*roles, ranks=1, dim=2, check=True, **more):
+    """A box with sides left, right, below, above (and behind, in front)."""
+    entries = {
+        "Dimension": dim,
+        "Geometry/Plane model": "generalized strain" if dim == 2 else "strain",
+        "Geometry/Arguments": "4, 3 : 0, 0 : 1, 1 : true",
+        "Material/Young's modulus": E,
+        "Material/Poisson's ratio": NU,
+        "Time/Phases": "1: 1",
+        "Solver/Contact tolerance": 1e-12,
+        "Output/Fields every": 0,
+    }
+    for i, role in enumerate(roles):
+        role = {"Role": role} if isinstance(role, str) else role
+        entries.update({f"Boundary {i}/{name}": role[name] for name in role})
+    return run("section", {**entries, **more}, ranks=ranks, text="", check=check)
+
+
+class Patch(TestCase):
+    """A uniform state, exact on a distorted mesh with hanging nodes."""
+
+    def check(self, ranks=1, force=0.01, heat=0.0, **more):
+        stress = np.array([-0.02, 0.0, force])
+        strain = (stress - NU * (stress.sum() - stress)) / E + heat
+        result = section(
+            *SQUARE,
+            ranks=ranks,
+            **{
+                "Geometry/Coordinates": "x + 0.3*x*(x - 0.5)*(1 - x)*y; "
+                "y*(1 + 0.2*(1 - y)*x)",
+                "Geometry/Boundary refinements": "0: 1, 2: 1",
+                "Loads/Axial force": f"{force}*t",
+                "Exact solution/Displacement": "; ".join(
+                    f"{e}*{x}*t" for e, x in zip(strain, ("x", "y", "1"))
+                ),
+                "Exact solution/Stress": f"-0.02*t; 0; {force}*t; 0",
+                **more,
+            },
+        )
+        self.assertLess(result["error_energy"][-1], 1e-11 * result["exact_energy"][-1])
+        self.assertLess(result["error_stress"][-1], 1e-11 * result["exact_stress"][-1])
+        self.assertClose(result["axial_strain"][-1], strain[2], relative=1e-11)
+        self.assertClose(result["axial_force"][-1], force, absolute=1e-13)
+        if not heat:
+            work = 0.5 * stress @ strain
+            self.assertClose(result["external_work"][-1], work, relative=1e-11)
+            self.assertClose(result["stored_energy"][-1], work, relative=1e-11)
+
+    def test_solvers(self):
+        for solver in SOLVERS:
+            self.check(**{"Solver/Linear solver": solver})
+
+    def test_free_ends(self):
+        self.check(force=0)
+        self.check(**{"Material/Volumetric integration": "mean dilatation"})
+
+    def test_heat(self):
+        self.check(
+            force=0,
+            heat=1e-3,
+            **{
+                "Temperature/Value": "20 + 10*t",
+                "Material/Thermal expansion": 1e-4,
+            },
+        )
+
+    def test_ranks(self):
+        for ranks in 2, 3:
+            self.check(ranks)
+
+    def test_creep(self):
+        """A bar with free ends creeps as in one dimension, its section by half."""
+        rate, n, load = 30, 3, 0.1
+        result = section(
+            "symmetry",
+            {"Role": "traction", "Pressure": load},
+            "symmetry",
+            "free",
+            **{
+                "Material/Law": "norton",
+                "Material/norton/Rate factor": rate,
+                "Material/norton/Exponent": n,
+                "Material/norton/Stress cap": 1,
+                "Initial state/Equilibrate": "true",
+                "Time/Scheme": "backward Euler",
+                "Time/Phases": "1: 2",
+            },
+        )
+        expected = NU * load / E + 0.5 * rate * load**n
+        self.assertClose(result["axial_strain"][-1], expected, relative=1e-8)
+
+
+class Cylinder(TestCase):
+    """Lame's thick cylinder with open and with closed ends: first order, the strain
+    of its axis of second order, and estimates that are the errors."""
+
+    def quarter(self, closed, refinements):
+        inner, outer, p = 1, 2, 0.1
+        C = p * inner**2 / (outer**2 - inner**2)
+        D = C * outer**2
+        axial = C if closed else 0
+        u = f"({(1 - NU) * C - NU * axial} + {(1 + NU) * D}/(x^2 + y^2))/{E}"
+        strain = (axial - 2 * NU * C) / E
+        result = section(
+            {"Role": "traction", "Pressure": f"{p}*t"},
+            "free",
+            "symmetry",
+            "symmetry",
+            **{
+                "Geometry/Generator": "quarter_hyper_shell",
+                "Geometry/Arguments": f"0, 0 : {inner} : {outer} : 4 : true",
+                "Geometry/Global refinements": refinements,
+                "Loads/Axial force": f"{p * np.pi / 4 * inner**2 * closed}*t",
+                "Exact solution/Displacement": f"t*x*{u}; t*y*{u}; {strain}*t",
+            },
+        )
+        return result, strain
+
+    def test_ends(self):
+        for closed in False, True:
+            errors, axial = [], []
+            for refinements in 2, 3:
+                result, strain = self.quarter(closed, refinements)
+                errors.append(result["error_energy"][-1])
+                axial.append(abs(result["axial_strain"][-1] / strain - 1))
+                effectivity = result["estimate_total"][-1] / errors[-1]
+                self.assertGreater(effectivity, 0.8)
+                self.assertLess(effectivity, 2)
+            self.assertGreater(np.log2(errors[0] / errors[1]), 0.95)
+            if closed:  # by a force that misses the area of chords
+                self.assertGreater(np.log2(axial[0] / axial[1]), 1.9)
+            else:  # a dilatation is a test function
+                self.assertLess(max(axial), 1e-12)
+
+    def test_quantities(self):
+        """The error of the strain, and of the force of a strain, by duality."""
+        for quantity, load in (("strain", "force"), ("force", "strain")):
+            values, corrections = [], []
+            for refinements in 1, 2, 5:
+                result = section(
+                    "clamped",
+                    PRESSED,
+                    "free",
+                    "free",
+                    **{
+                        "Geometry/Global refinements": refinements,
+                        f"Loads/Axial {load}": "0.01*t",
+                        "Error control/Quantity": f"axial_{quantity}",
+                    },
+                )
+                values.append(result[f"axial_{quantity}"][-1])
+                corrections.append(result["quantity_correction"][-1])
+            for value, correction in zip(values[:2], corrections):
+                effectivity = correction / (values[2] + corrections[2] - value)
+                self.assertGreater(effectivity, 0.5)
+                self.assertLess(effectivity, 1.5)
+
+
+class Block(TestCase):
+    """Creep on a plane with friction."""
+
+    def block(self, ranks=1, **more):
+        return section("symmetry", "free", "free", "free", ranks=ranks, **{**BLOCK, **more})
+
+    def assertSame(self, result, other, tolerance):
+        for name in (
+            "axial_strain",
+            "axial_force",
+            "contact_force_y",
+            "friction_force_x",
+            "stored_energy",
+            "viscous_dissipation",
+            "friction_dissipation",
+            "external_work",
+        ):
+            self.assertClose(
+                result[name],
+                other[name],
+                relative=tolerance,
+                absolute=1e-3 * tolerance,
+                what=name,
+            )
+
+    def test_ranks_and_solvers(self):
+        direct = self.block()
+        self.assertGreater(direct["slip_area"][-1], 0)
+        self.assertGreater(direct["stick_area"][-1], 0)
+        self.assertLess(abs(direct["axial_force"]).max(), 1e-10)
+        self.assertLess(abs(direct["force_balance_defect"]).max(), 1e-9)
+        for ranks in 1, 2, 3:
+            for solver in SOLVERS[1:]:
+                with self.subTest(solver, ranks=ranks):
+                    other = self.block(ranks, **{"Solver/Linear solver": solver})
+                    self.assertSame(other, direct, 1e-9)
+
+    def test_force_of_a_strain(self):
+        """The force that belongs to a given strain gives that strain."""
+        once = {"Time/Phases": "1: 1"}
+        given = self.block(**once, **{"Loads/Axial strain": "0.01*t"})
+        force = given["axial_force"][-1]
+        self.assertGreater(force, 1e-3)
+        again = self.block(**once, **{"Loads/Axial force": f"{force!r}*t"})
+        self.assertClose(again["axial_strain"][-1], 0.01, relative=1e-8)
+        self.assertSame(again, given, 1e-7)
+
+    def test_no_strain(self):
+        ours = self.block(**{"Loads/Axial strain": 0})
+        plane = self.block(**{"Geometry/Plane model": "strain"})
+        for name in plane.statistics:
+            if name not in EFFORT | DEFECTS and not name.startswith(("wall", "seconds")):
+                self.assertClose(ours[name], plane[name], 1e-9, 1e-13, what=name)
+
+    def test_in_space(self):
+        """A layer of cells whose ends move apart as given."""
+        strain = "0.01*t"
+        layer = section(
+            "symmetry",
+            "free",
+            "free",
+            "free",
+            "symmetry",
+            {"Role": "displacement", "Displacement": f"free; free; 0.5*{strain}"},
+            dim=3,
+            **{
+                **BLOCK,
+                "Geometry/Boundary refinements": "",
+                "Geometry/Arguments": "8, 6, 1 : 0, 0, 0 : 1, 1, 0.5 : true",
+            },
+        )
+        ours = self.block(
+            **{
+                "Loads/Axial strain": strain,
+                "Geometry/Arguments": "8, 6 : 0, 0 : 1, 1 : true",
+                "Geometry/Boundary refinements": "",
+            }
+        )
+        self.assertClose(layer["reaction_5_z"], ours["axial_force"], relative=1e-7)
+        for name in "contact_force_y", "stored_energy", "viscous_dissipation":
+            self.assertClose(2 * layer[name], ours[name], relative=1e-7, what=name)
+
+
+class Refusals(TestCase):
+    def test_sentences(self):
+        for entries, sentence in (
+            ({"Loads/Axial force": "x"}, "depends on the place"),
+            ({"Loads/Axial force": 1, "Loads/Axial strain": 1}, "leave one of them"),
+            (
+                {"Loads/Axial force": 1, "Geometry/Plane model": "strain"},
+                "is that of 'Geometry/Plane model' = generalized strain",
+            ),
+        ):
+            result = section(*SQUARE, check=False, **entries)
+            self.assertNotEqual(result.returncode, 0)
+            self.assertIn(sentence, " ".join(result.stderr.split()))
+
+
+if __name__ == "__main__":
+    main()

@@ -358,22 +358,26 @@ namespace Viscoplastic
               }
             if (remembers)
               {
+                const SymmetricTensor<2, 3> change_of_history =
+                  end.rate->history_rate[i] - accepted_rate.history_rate[i];
+                // By k^2 alpha''/2 Heun's predictor misses the history of the
+                // end, half of which counts.
+                const SymmetricTensor<2, 3> predicted =
+                  -3. * defect.second * k * change_of_history;
                 const HistoryStep carried =
                   carry_history_error(*law,
-                                      state.history_error[i],
+                                      state.history_error[i] + predicted,
                                       stress,
                                       now.mechanical(strains[s], c, s),
                                       k,
                                       stiffness,
                                       point);
-                const SymmetricTensor<2, 3> change_of_history =
-                  end.rate->history_rate[i] - accepted_rate.history_rate[i];
                 state.history_error[i] =
-                  carried.history + (is_second ?
-                                       defect_of(change_of_history,
-                                                 accepted.history_slope[i],
-                                                 state.history_slope[i]) :
-                                       defect.first * k * change_of_history);
+                  carried.history - predicted +
+                  (is_second ? defect_of(change_of_history,
+                                         accepted.history_slope[i],
+                                         state.history_slope[i]) :
+                               defect.first * k * change_of_history);
                 state.time_error[i] += carried.z;
                 if (relaxes)
                   state.remembered_error[i] += carried.z;

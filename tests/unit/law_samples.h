@@ -133,7 +133,7 @@ namespace Viscoplastic::Testing
         add("lubby2",
             "set Maxwell viscosity = 3\nset Maxwell viscosity exponent = "
             "-0.5\nset Kelvin modulus = 0.4\nset Kelvin modulus exponent = "
-            "-0.4\nset Kelvin viscosity = 0.7\nset Kelvin viscosity exponent "
+            "-0.9\nset Kelvin viscosity = 0.7\nset Kelvin viscosity exponent "
             "= -0.6\nset Stress cap = 3");
         add("parsed",
             "set Strain rate = max(0, sigma_eq - max(0, 0.2 + 0.5*p))");

@@ -288,8 +288,9 @@ namespace Viscoplastic
         targets.push_back(nodal_fields(state)[f]);
     const unsigned int                n_fields = targets.size();
     std::vector<IrreversibleStress *> sampled;
-    for (unsigned int f = 0; f < packed.n_sample_fields; ++f)
-      sampled.push_back(sample_fields(state)[f]);
+    for (unsigned int f = 0; f < packed.has_sample_field.size(); ++f)
+      if (packed.has_sample_field[f])
+        sampled.push_back(sample_fields(state)[f]);
     const std::size_t n_z = stress_space.n_samples * 6; // a cell and field
 
     // Vertices of owned cells are vertices of owned or ghost cells elsewhere.

@@ -239,7 +239,7 @@ namespace Viscoplastic
                           {},
                           has_nodal_field,
                           has_estimate,
-                          ErrorEstimator<dim>::n_sample_fields(run.scene)};
+                          ErrorEstimator<dim>::has_sample_fields(run.scene)};
       for (unsigned int r = begin; r < end; ++r)
         packed.fields.push_back(store.read(checkpoint, fields_file(r)));
       const bool complete =

@@ -79,21 +79,39 @@ namespace Viscoplastic
         if (law && law->has_own_energy())
           {
             const LawPoint              point = now.point(c, s);
-            const SymmetricTensor<2, 3> stress =
-              stiffness.stress(strain[s]) + z;
-            driving_strain =
-              law->driving_strain(stiffness.stress(mean_strain) + mean_z,
-                                  0.5 *
-                                    (before.mechanical(old_strain[s], c, s) +
-                                     now.mechanical(strain[s], c, s)),
-                                  stiffness,
-                                  point);
-            result.irreversible_energy +=
-              weight * (law->stored_energy(stress,
-                                           now.mechanical(strain[s], c, s),
-                                           stiffness,
-                                           point) -
-                        0.5 * stiffness.complementary_square(stress));
+            const SymmetricTensor<2, 3> old_strain_of_law =
+                                          before.mechanical(old_strain[s],
+                                                            c,
+                                                            s),
+                                        strain_of_law =
+                                          now.mechanical(strain[s], c, s);
+            // Beyond that of the stress.
+            const auto own_energy = [&](const SymmetricTensor<2, 3> &total,
+                                        const SymmetricTensor<2, 3> &z,
+                                        const SymmetricTensor<2, 3> &of_law,
+                                        const LawPoint              &at) {
+              const SymmetricTensor<2, 3> stress = stiffness.stress(total) + z;
+              return weight *
+                     (law->stored_energy(stress, of_law, stiffness, at) -
+                      0.5 * stiffness.complementary_square(stress));
+            };
+            const double energy =
+              own_energy(strain[s], z, strain_of_law, point);
+            result.irreversible_energy += energy;
+            if (law->n_history_variables > 0)
+              {
+                LawPoint start = point;
+                start.history  = before.point(c, s).history;
+                result.viscous_dissipation -=
+                  energy -
+                  own_energy(old_strain[s], old_z, old_strain_of_law, start);
+              }
+            else
+              driving_strain =
+                law->driving_strain(stiffness.stress(mean_strain) + mean_z,
+                                    0.5 * (old_strain_of_law + strain_of_law),
+                                    stiffness,
+                                    point);
           }
         result.viscous_dissipation -= weight * (flow * driving_strain);
       }
@@ -109,7 +127,8 @@ namespace Viscoplastic
                    const State<dim>    &state)
   {
     const StressSpace<dim> &stress_space = laws.stress_space;
-    const auto         before = laws.at(old_state.t), now = laws.at(state.t);
+    const auto              before = laws.at(old_state.t, old_state.history),
+               now                 = laws.at(state.t, state.history);
     StressSummary<dim> result;
     LargestPlace<dim>  largest_mises;
     double             volume = 0.;

@@ -101,6 +101,9 @@ namespace Viscoplastic
             index.at(&scene.material(cell->material_id())));
       }
 
+    AssertThrow(source_solution == nullptr || !scene.has_history(),
+                ExcMessage("'Exact solution' makes no data for laws with "
+                           "history variables, of which it knows nothing."));
     const AtTime start = at(0.);
     for (std::size_t c = 0; c < stress_space.n_cells(); ++c)
       for (unsigned int s = 0; s < stress_space.n_samples; ++s)
@@ -112,7 +115,7 @@ namespace Viscoplastic
                                                  0.,
                                                  start.temperature(c, s))
                                          .parameters :
-                                       std::array<double, 6>());
+                                       LawParameters());
           if (law && (s == 0 || start.varies_in_space(c)))
             law->check(stress_space.moduli(c), start.point(c, s));
           if (law && s == 0)
@@ -165,12 +168,30 @@ namespace Viscoplastic
                      [](const Entry &entry) { return entry.varies_in_time; }) &&
         !(thermal && thermal->varies_in_time))
       return;
-    const AtTime now(*this, t); // evaluates what depends on t alone
+    const AtTime now = at(t); // evaluates what depends on t alone
     for (std::size_t c = 0; c < stress_space.n_cells(); ++c)
       if (now.law(c) && now.entry(c).varies_in_time &&
           now.entry(c).varies_in_space)
         for (unsigned int s = 0; s < stress_space.n_samples; ++s)
           now.point(c, s);
+  }
+
+
+
+  template <int dim>
+  void
+  FlowLaws<dim>::begin_history(const std::vector<bool> &cells,
+                               State<dim>              &state) const
+  {
+    if (!stress_space.space.scene.has_history())
+      return;
+    const unsigned int n   = stress_space.n_samples;
+    const AtTime       now = at(state.t);
+    state.history.resize(stress_space.n_cells() * n);
+    for (std::size_t c = 0; c < stress_space.n_cells(); ++c)
+      if (const ViscoplasticLaw *law = now.law(c); law && cells[c])
+        for (unsigned int s = 0; s < n; ++s)
+          law->set_initial_history(now.point(c, s), state.history[c * n + s]);
   }
 
 
@@ -200,10 +221,13 @@ namespace Viscoplastic
 
 
   template <int dim>
-  FlowLaws<dim>::AtTime::AtTime(const FlowLaws &laws, const double t)
+  FlowLaws<dim>::AtTime::AtTime(const FlowLaws           &laws,
+                                const double              t,
+                                const IrreversibleStress *history)
     : thermal(laws.thermal ? laws.thermal->at(t) : nullptr)
     , laws(laws)
     , t(t)
+    , history(history)
   {
     // Parameters that are the same everywhere are those of any temperature.
     const double T =
@@ -236,15 +260,17 @@ namespace Viscoplastic
     const unsigned int m     = material(cell);
     const Entry       &entry = laws.materials[m];
     const Point<3>     x     = position(laws.stress_space, cell, s);
-    if (entry.varies_in_space && entry.varies_in_time)
-      return entry.law->point(x, t, temperature(cell, s));
-    LawPoint point = uniform[m];
-    if (entry.varies_in_space)
-      point.parameters =
-        laws.parameters[cell * laws.stress_space.n_samples + s];
+    const std::size_t  i     = cell * laws.stress_space.n_samples + s;
+    const bool         anew  = entry.varies_in_space && entry.varies_in_time;
+    LawPoint           point =
+      anew ? entry.law->point(x, t, temperature(cell, s)) : uniform[m];
+    if (entry.varies_in_space && !anew)
+      point.parameters = laws.parameters[i];
     point.x           = x;
     point.t           = t;
     point.temperature = temperature(cell, s);
+    if (history != nullptr)
+      point.history = &(*history)[i];
     return point;
   }
 
@@ -262,6 +288,19 @@ namespace Viscoplastic
                  "it limits the time step.";
       AssertThrow(false, ExcMessage(message.str()));
     }
+
+
+
+    void
+    refuse_history(const Point<3> &x, const double t)
+    {
+      std::ostringstream message;
+      message << "The rate of a history variable at x = (" << x
+              << "), t = " << t
+              << " is not finite; look for what history_rate() of the law "
+                 "divides by.";
+      AssertThrow(false, ExcMessage(message.str()));
+    }
   } // namespace
 
 
@@ -269,16 +308,17 @@ namespace Viscoplastic
   template <int dim>
   FlowRate
   evaluate_flow(const FlowLaws<dim>                    &laws,
-                const DistributedVector                &ghosted_u,
-                const IrreversibleStress               &z,
+                const State<dim>                       &state,
                 const double                            t,
                 const typename ExactSolution<dim>::Side side)
   {
-    const StressSpace<dim> &stress_space = laws.stress_space;
-    const unsigned int      n            = stress_space.n_samples;
-    const MPI_Comm          comm         = stress_space.space.communicator;
-    const auto              now          = laws.at(t);
-    FlowRate                result{IrreversibleStress(z.size()), 0., 0.};
+    const StressSpace<dim>   &stress_space = laws.stress_space;
+    const unsigned int        n            = stress_space.n_samples;
+    const MPI_Comm            comm         = stress_space.space.communicator;
+    const IrreversibleStress &z            = state.z;
+    const auto                now          = laws.at(t, state.history);
+    FlowRate                  result{IrreversibleStress(z.size()), 0., 0.};
+    result.history_rate.resize(state.history.size());
     std::array<SymmetricTensor<2, 3>, GeometryInfo<dim>::vertices_per_cell>
                                                                strain, stress;
     std::array<LawPoint, GeometryInfo<dim>::vertices_per_cell> points;
@@ -295,7 +335,7 @@ namespace Viscoplastic
           if (law == nullptr)
             continue;
           const Stiffness &stiffness = stress_space.moduli(c);
-          stress_space.strains(c, ghosted_u.begin(), strain.data());
+          stress_space.strains(c, state.u.begin(), strain.data());
           for (unsigned int s = 0; s < n; ++s)
             {
               stress[s] = stiffness.stress(strain[s]) + z[c * n + s];
@@ -316,6 +356,13 @@ namespace Viscoplastic
               if (flow[s].is_beyond_cap)
                 result.capped_volume += stress_space.weight(c, s);
             }
+          for (unsigned int s = 0; law->n_history_variables > 0 && s < n; ++s)
+            {
+              SymmetricTensor<2, 3> &H = result.history_rate[c * n + s];
+              H = law->history_rate(stress[s], strain[s], stiffness, points[s]);
+              if (!std::isfinite(H.norm()))
+                refuse_history(points[s].x, t);
+            }
         }
     });
     worst.reduce(comm);
@@ -332,14 +379,12 @@ namespace Viscoplastic
   template class FlowLaws<3>;
   template FlowRate
   evaluate_flow<2>(const FlowLaws<2> &,
-                   const DistributedVector &,
-                   const IrreversibleStress &,
+                   const State<2> &,
                    const double,
                    const ExactSolution<2>::Side);
   template FlowRate
   evaluate_flow<3>(const FlowLaws<3> &,
-                   const DistributedVector &,
-                   const IrreversibleStress &,
+                   const State<3> &,
                    const double,
                    const ExactSolution<3>::Side);
 } // namespace Viscoplastic

@@ -27,7 +27,8 @@ namespace Viscoplastic
             temperature = equation.point.temperature;
             inverse     = invert(
               identity_tensor<3>() -
-              k * law->tangents({}, {}, *stiffness, equation.point).stress);
+              k * law->step_tangents({}, {}, k, *stiffness, equation.point)
+                    .stress);
           }
         return start - inverse * equation.residual(start);
       }
@@ -36,7 +37,7 @@ namespace Viscoplastic
       const ViscoplasticLaw *law       = nullptr;
       const Stiffness       *stiffness = nullptr;
       double                 k         = 0.;
-      std::array<double, 6>  parameters{};
+      LawParameters          parameters{};
       double                 temperature = 0.;
       SymmetricTensor<4, 3>  inverse;
     };
@@ -60,6 +61,11 @@ namespace Viscoplastic
       const ViscoplasticLaw &law = *laws.law(c);
       const Stiffness       &stiffness = stress_space.moduli(c);
       stress_space.strains(c, ghosted_u.begin(), strain.data());
+      // An inverse for one sample costs more than radial return.
+      const bool keeps_inverse =
+        law.has_constant_tangents() &&
+        !(laws.varies_in_space(c) && stiffness.is_isotropic() &&
+          law.radial_flow(0., laws.point(c, 0)));
       for (unsigned int s = 0; s < stress_space.n_samples; ++s)
         {
           const std::size_t i = c * stress_space.n_samples + s;
@@ -75,7 +81,7 @@ namespace Viscoplastic
           const SymmetricTensor<2, 3> old = old_z[i] - thermal,
                                       from = start[i] - thermal;
           z[i]                             = thermal +
-                 (law.has_constant_tangents() ?
+                 (keeps_inverse ?
                                             linear_equation.solve(
                       {law, strain_of_law, old, k, stiffness, point}, from) :
                                             implicit_irreversible_stress(
@@ -94,6 +100,48 @@ namespace Viscoplastic
 
 
 
+  template <int dim>
+  void
+  advance_history(const typename FlowLaws<dim>::AtTime &laws,
+                  const StressSpace<dim>               &stress_space,
+                  const double                          k,
+                  State<dim>                           &state)
+  {
+    if (!stress_space.space.scene.has_history())
+      return;
+    const unsigned int                 n = stress_space.n_samples;
+    std::vector<SymmetricTensor<2, 3>> strain(n);
+    fail_together(stress_space.space.communicator, [&] {
+      for (std::size_t c = 0; c < stress_space.n_cells(); ++c)
+        if (const ViscoplasticLaw *law = laws.law(c);
+            law && law->n_history_variables > 0)
+          {
+            const Stiffness &stiffness = stress_space.moduli(c);
+            stress_space.strains(c, state.u.begin(), strain.data());
+            for (unsigned int s = 0; s < n; ++s)
+              state.history[c * n + s] =
+                law->history_after_step(stiffness.stress(strain[s]) +
+                                          state.z[c * n + s],
+                                        laws.mechanical(strain[s], c, s),
+                                        k,
+                                        stiffness,
+                                        laws.point(c, s));
+          }
+    });
+  }
+
+
+
+  template void
+  advance_history<2>(const FlowLaws<2>::AtTime &,
+                     const StressSpace<2> &,
+                     const double,
+                     State<2> &);
+  template void
+  advance_history<3>(const FlowLaws<3>::AtTime &,
+                     const StressSpace<3> &,
+                     const double,
+                     State<3> &);
   template IrreversibleStress
   implicit_irreversible_stress<2>(const FlowLaws<2>::AtTime &,
                                   const StressSpace<2> &,

@@ -67,10 +67,10 @@ namespace Viscoplastic
 
   template <int dim>
   bool
-  TangentMatrix<dim>::linearize(const DistributedVector  &ghosted_u,
-                                const IrreversibleStress &z,
-                                const double              t,
-                                const double              k_exact)
+  TangentMatrix<dim>::linearize(const DistributedVector              &ghosted_u,
+                                const IrreversibleStress             &z,
+                                const typename FlowLaws<dim>::AtTime &now,
+                                const double                          k_exact)
   {
     const double k = is_constant ? without_rounding(k_exact) : k_exact;
     if (is_constant && k == step_size)
@@ -78,7 +78,6 @@ namespace Viscoplastic
 
     const StressSpace<dim>            &stress_space = laws.stress_space;
     const unsigned int                 n            = stress_space.n_samples;
-    const auto                         now          = laws.at(t);
     std::vector<SymmetricTensor<2, 3>> strain(n);
     const MPI_Comm                     comm = stress_space.space.communicator;
     // Never the same before the first time, also on ranks without cells; nor

@@ -51,6 +51,42 @@ namespace Viscoplastic
 
 
 
+    /// What a step of backward Euler to this stress makes of the history
+    /// variables, and what it adds to z.
+    struct HistoryStep
+    {
+      SymmetricTensor<2, 3> history, z;
+    };
+
+    /// What it makes of an error of those that it starts from: the difference
+    /// of two steps.
+    HistoryStep
+    carry_history_error(const ViscoplasticLaw       &law,
+                        const SymmetricTensor<2, 3> &error,
+                        const SymmetricTensor<2, 3> &stress,
+                        const SymmetricTensor<2, 3> &strain,
+                        const double                 k,
+                        const Stiffness             &stiffness,
+                        LawPoint                     point)
+    {
+      const auto step = [&](const SymmetricTensor<2, 3> &from) {
+        point.history = &from;
+        const SymmetricTensor<2, 3> history =
+          law.history_after_step(stress, strain, k, stiffness, point);
+        point.history = &history;
+        return HistoryStep{history,
+                           k * law.rate(stress, strain, stiffness, point)};
+      };
+      const SymmetricTensor<2, 3> start   = *point.history;
+      HistoryStep                 with    = step(start + error);
+      const HistoryStep           without = step(start);
+      with.history -= without.history;
+      with.z -= without.z;
+      return with;
+    }
+
+
+
     /// (1 + k dG/deps E^-1)^-1, what a step leaves of an error of z that makes
     /// no stress, since strains make up for it: of linear laws that depend on
     /// the strain. None of others, whose strain stays.
@@ -92,17 +128,25 @@ namespace Viscoplastic
 
 
   template <int dim>
-  unsigned int
-  ErrorEstimator<dim>::n_sample_fields(const Scene<dim> &scene)
+  std::array<bool, 7>
+  ErrorEstimator<dim>::has_sample_fields(const Scene<dim> &scene)
   {
-    if (!scene.has_irreversible_stress())
-      return 0;
-    if (!scene.parameters.error_control.error_estimator ||
-        !scene.has_viscosity())
-      return 1;
-    if (scene.quantity && scene.quantity->is_force())
-      return 4;
-    return time_defect(scene.parameters.time.scheme).second != 0. ? 3 : 2;
+    const bool estimates = scene.parameters.error_control.error_estimator &&
+                           scene.has_viscosity(),
+               remembers =
+                 estimates && scene.quantity && scene.quantity->is_force(),
+               has_slopes =
+                 remembers ||
+                 (estimates &&
+                  time_defect(scene.parameters.time.scheme).second != 0.),
+               has_history = scene.has_history();
+    return {{scene.has_irreversible_stress(),
+             estimates,
+             has_slopes,
+             remembers,
+             has_history,
+             has_history && estimates,
+             has_history && has_slopes}};
   }
 
 
@@ -116,12 +160,10 @@ namespace Viscoplastic
     Vector<double> squared_by_cell;
     initial.errors.initial =
       initial_data_error(stress_space, state, &squared_by_cell);
-    if (n_sample_fields(scene) > 1)
-      state.time_error.assign(state.z.size(), SymmetricTensor<2, 3>());
-    if (n_sample_fields(scene) > 2)
-      state.rate_slope.assign(state.z.size(), SymmetricTensor<2, 3>());
-    if (n_sample_fields(scene) > 3)
-      state.remembered_error.assign(state.z.size(), SymmetricTensor<2, 3>());
+    const auto has_field = has_sample_fields(scene);
+    for (unsigned int f = 0; f < has_field.size(); ++f)
+      if (has_field[f])
+        sample_fields(state)[f]->resize(state.z.size());
     return squared_by_cell;
   }
 
@@ -190,11 +232,11 @@ namespace Viscoplastic
   {
     const State<dim>       &accepted     = old.state;
     const StressSpace<dim> &stress_space = laws.stress_space;
-    const auto              now          = laws.at(end.state.t);
-    State<dim>             &state        = end.state;
-    ErrorEstimate          &estimate     = end.errors;
-    const bool              is_second    = n_sample_fields(scene) > 2,
-               relaxes                   = n_sample_fields(scene) > 3;
+    const auto              now       = laws.at(end.state.t, accepted.history);
+    State<dim>             &state     = end.state;
+    ErrorEstimate          &estimate  = end.errors;
+    const auto              has_field = has_sample_fields(scene);
+    const bool              is_second = has_field[2], relaxes = has_field[3];
     const bool is_measured = scene.parameters.step_control.is_on() ||
                              scene.parameters.error_control.has_tolerance() ||
                              scene.quantity;
@@ -211,6 +253,21 @@ namespace Viscoplastic
     if (is_second)
       state.rate_slope.resize(accepted.rate_slope.size());
     state.remembered_error = accepted.remembered_error;
+    state.history_error    = accepted.history_error;
+    state.history_slope.resize(accepted.history_slope.size());
+    // What a step has left out of z or history, to leading order, and its
+    // slope.
+    const auto defect_of = [&](const SymmetricTensor<2, 3> &change,
+                               const SymmetricTensor<2, 3> &old_slope,
+                               SymmetricTensor<2, 3>       &slope) {
+      SymmetricTensor<2, 3> step = defect.first * k * change;
+      slope                      = change / k;
+      // There is no second derivative before the second step.
+      if (has_slope)
+        step += defect.second * k * k * k * 2. / (k + accepted.k) *
+                (slope - old_slope);
+      return step;
+    };
     std::vector<double>                  sums(5, 0.);
     std::vector<SymmetricTensor<2, 3>>   strains(stress_space.n_samples);
     std::optional<SymmetricTensor<4, 3>> fading;
@@ -242,23 +299,20 @@ namespace Viscoplastic
         last_law                = law;
         last_stiffness          = &stiffness;
         const bool needs_stress = law && ((fades && of_loads > 0.) ||
-                                          ((relaxes || fades) && !is_uniform));
+                                          ((relaxes || fades) && !is_uniform) ||
+                                          law->n_history_variables > 0);
         if (needs_stress)
           stress_space.strains(c, state.u.begin(), strains.data());
         for (unsigned int s = 0; s < stress_space.n_samples; ++s, ++i)
           {
-            const double                weight = stress_space.weight(c, s);
+            const double weight    = stress_space.weight(c, s);
+            const bool   remembers = law && law->n_history_variables > 0;
             const SymmetricTensor<2, 3> change =
               end.rate->rate[i] - accepted_rate.rate[i];
-            SymmetricTensor<2, 3> step = defect.first * k * change;
-            if (is_second)
-              {
-                state.rate_slope[i] = change / k;
-                // There is no second derivative before the second step.
-                if (has_slope)
-                  step += defect.second * k * k * k * 2. / (k + accepted.k) *
-                          (state.rate_slope[i] - accepted.rate_slope[i]);
-              }
+            SymmetricTensor<2, 3> step =
+              is_second ?
+                defect_of(change, accepted.rate_slope[i], state.rate_slope[i]) :
+                defect.first * k * change;
             if (needs_stress)
               stress = stiffness.stress(strains[s]) + state.z[i];
             if (law && (relaxes || fades) && !is_uniform)
@@ -269,6 +323,9 @@ namespace Viscoplastic
                                             stiffness,
                                             now.point(c, s));
             const SymmetricTensor<2, 3> all = step;
+            LawPoint                    point;
+            if (remembers)
+              point = now.point(c, s);
             if (fades)
               {
                 // The loads have changed G by no more than r times the change
@@ -283,7 +340,47 @@ namespace Viscoplastic
                       std::sqrt(stiffness.complementary_square(change));
                     share = most < size ? most / size : 1.;
                   }
-                step = share * all + (1. - share) * (relaxation * all);
+                // Nor is what the history has changed relaxation of stress.
+                SymmetricTensor<2, 3> of_history;
+                if (remembers)
+                  {
+                    const SymmetricTensor<2, 3> strain =
+                      now.mechanical(strains[s], c, s);
+                    LawPoint after = point;
+                    after.history  = &state.history[i];
+                    of_history     = defect.first * k *
+                                 (law->rate(stress, strain, stiffness, after) -
+                                  law->rate(stress, strain, stiffness, point));
+                  }
+                step =
+                  share * all +
+                  (1. - share) * (of_history + relaxation * (all - of_history));
+              }
+            if (remembers)
+              {
+                const SymmetricTensor<2, 3> change_of_history =
+                  end.rate->history_rate[i] - accepted_rate.history_rate[i];
+                // By k^2 alpha''/2 Heun's predictor misses the history of the
+                // end, half of which counts.
+                const SymmetricTensor<2, 3> predicted =
+                  -3. * defect.second * k * change_of_history;
+                const HistoryStep carried =
+                  carry_history_error(*law,
+                                      state.history_error[i] + predicted,
+                                      stress,
+                                      now.mechanical(strains[s], c, s),
+                                      k,
+                                      stiffness,
+                                      point);
+                state.history_error[i] =
+                  carried.history - predicted +
+                  (is_second ? defect_of(change_of_history,
+                                         accepted.history_slope[i],
+                                         state.history_slope[i]) :
+                               defect.first * k * change_of_history);
+                state.time_error[i] += carried.z;
+                if (relaxes)
+                  state.remembered_error[i] += carried.z;
               }
             state.time_error[i] += step;
             if (fading)

@@ -17,7 +17,7 @@ namespace Viscoplastic
     const StressSpace<dim> &stress_space = laws.stress_space;
     const MPI_Comm          communicator = stress_space.space.communicator;
     Assert(stress_space.n_samples == 1, ExcInternalError());
-    const auto now    = laws.at(state.t);
+    const auto now    = laws.at(state.t, state.history);
     double     square = 0.;
     fail_together(communicator, [&] {
       for (unsigned int c = 0; c < stress_space.n_cells(); ++c)

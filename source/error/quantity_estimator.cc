@@ -86,7 +86,8 @@ namespace Viscoplastic
     const double k = std::exp2(
       0.5 *
       std::floor(2. * std::log2(std::min(state.t, 1e3 / relaxation_rate))));
-    const bool is_new = tangent->linearize(state.u, state.z, state.t, k);
+    const auto now    = discretization.laws.at(state.t, state.history);
+    const bool is_new = tangent->linearize(state.u, state.z, now, k);
     const DualSolution<dim> dual =
       dual_problem.solve(solver_of_tangents(*tangent, is_new),
                          tangent->matrix(),
@@ -99,10 +100,9 @@ namespace Viscoplastic
     std::vector<SymmetricTensor<2, 3>> strains(n);
     std::size_t strained_cell = numbers::invalid_size_type; // whose strains
     if (!tangent->is_constant)
-      linearization.remainder = [&, now = discretization.laws.at(state.t)](
-                                  const std::size_t            c,
-                                  const unsigned int           s,
-                                  const SymmetricTensor<2, 3> &e) {
+      linearization.remainder = [&](const std::size_t            c,
+                                    const unsigned int           s,
+                                    const SymmetricTensor<2, 3> &e) {
         const ViscoplasticLaw *flow = now.law(c);
         if (flow == nullptr)
           return SymmetricTensor<2, 3>();
@@ -119,8 +119,9 @@ namespace Viscoplastic
         // C e = E e + k dG to first order.
         return stiffness.strain(
           change - stiffness.stress(e) -
-          k * (flow->rate(stress + change, strain + e, stiffness, point) -
-               flow->rate(stress, strain, stiffness, point)));
+          k *
+            (flow->step_rate(stress + change, strain + e, k, stiffness, point) -
+             flow->step_rate(stress, strain, k, stiffness, point)));
       };
     Vector<double> products =
       space_estimator.multiply_recovered(state, dual, linearization);

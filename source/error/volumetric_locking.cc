@@ -42,7 +42,7 @@ namespace Viscoplastic
     const MPI_Comm          communicator = stress_space.space.communicator;
     const bool              at_points    = stress_space.n_samples > 1;
     const auto              deviators    = unit_deviators<dim>();
-    const auto              now          = laws.at(state.t);
+    const auto              now          = laws.at(state.t, state.history);
     std::vector<double>     squares(cells.cells.size());
     double                  rate = 0., deviators_square = 0.;
     fail_together(communicator, [&] {

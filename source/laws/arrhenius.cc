@@ -15,7 +15,7 @@ namespace Viscoplastic
       Arrhenius(std::unique_ptr<ViscoplasticLaw> law_,
                 const double                     activation_temperature,
                 const double                     law_temperature)
-        : ViscoplasticLaw({})
+        : ViscoplasticLaw({}, law_->n_history_variables)
         , law(std::move(law_))
         , activation_temperature(activation_temperature)
         , inverse_law_temperature(1. / law_temperature)
@@ -82,6 +82,51 @@ namespace Viscoplastic
       {
         Tangents     result = law->tangents(stress, strain, stiffness, point);
         const double f      = factor(point);
+        result.stress *= f;
+        result.strain *= f;
+        return result;
+      }
+
+      void
+      set_initial_history(const LawPoint        &point,
+                          SymmetricTensor<2, 3> &history) const override
+      {
+        law->set_initial_history(point, history);
+      }
+
+      SymmetricTensor<2, 3>
+      history_rate(const SymmetricTensor<2, 3> &stress,
+                   const SymmetricTensor<2, 3> &strain,
+                   const Stiffness             &stiffness,
+                   const LawPoint              &point) const override
+      {
+        return factor(point) *
+               law->history_rate(stress, strain, stiffness, point);
+      }
+
+      // A step of the factor's size.
+
+      SymmetricTensor<2, 3>
+      history_after_step(const SymmetricTensor<2, 3> &stress,
+                         const SymmetricTensor<2, 3> &strain,
+                         const double                 k,
+                         const Stiffness             &stiffness,
+                         const LawPoint              &point) const override
+      {
+        return law->history_after_step(
+          stress, strain, k * factor(point), stiffness, point);
+      }
+
+      Tangents
+      step_tangents(const SymmetricTensor<2, 3> &stress,
+                    const SymmetricTensor<2, 3> &strain,
+                    const double                 k,
+                    const Stiffness             &stiffness,
+                    const LawPoint              &point) const override
+      {
+        const double f = factor(point);
+        Tangents     result =
+          law->step_tangents(stress, strain, k * f, stiffness, point);
         result.stress *= f;
         result.strain *= f;
         return result;

@@ -204,7 +204,8 @@ namespace Viscoplastic
   {
     if (const auto radial = radial_tangent(law, stress, k, stiffness, point))
       return radial->tangent;
-    const auto tangents = law.tangents(stress, strain, stiffness, point);
+    const auto tangents =
+      law.step_tangents(stress, strain, k, stiffness, point);
     const SymmetricTensor<4, 3> E = stiffness.tensor();
     // Exactly, so that a matrix is known to be that of an elastic body.
     if (tangents.stress.norm() == 0. && tangents.strain.norm() == 0.)
@@ -276,8 +277,9 @@ namespace Viscoplastic
                                   (a - b) / ((1. + a) * (1. + b)),
                                   s);
       }
-    return invert(identity_tensor<3>() -
-                  k * law.tangents(stress, strain, stiffness, point).stress);
+    return invert(
+      identity_tensor<3>() -
+      k * law.step_tangents(stress, strain, k, stiffness, point).stress);
   }
 
 

@@ -1,9 +1,13 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 
+#include <deal.II/lac/full_matrix.h>
+#include <deal.II/lac/vector.h>
+
 #include <viscoplastic_contact/base/subsection.h>
 #include <viscoplastic_contact/laws/viscoplastic_law.h>
 
 #include <algorithm>
+#include <cmath>
 #include <sstream>
 #include <utility>
 #include <vector>
@@ -18,6 +22,8 @@
   LAW(zener)                   \
   LAW(perzyna)                 \
   LAW(norton)                  \
+  LAW(burgers)                 \
+  LAW(lubby2)                  \
   LAW(parsed)
 // clang-format on
 
@@ -91,6 +97,9 @@ namespace Viscoplastic
         case Range::non_negative:
           check(value >= 0, "zero or positive");
           break;
+        case Range::non_positive:
+          check(value <= 0, "zero or negative");
+          break;
         case Range::at_least_one:
           check(value >= 1, "at least 1");
           break;
@@ -106,10 +115,15 @@ namespace Viscoplastic
 
 
 
-  ViscoplasticLaw::ViscoplasticLaw(std::vector<LawParameter> parameters_)
-    : parameters(std::move(parameters_))
+  ViscoplasticLaw::ViscoplasticLaw(std::vector<LawParameter> parameters_,
+                                   const unsigned int n_history_variables)
+    : n_history_variables(n_history_variables)
+    , parameters(std::move(parameters_))
   {
     AssertIndexRange(parameters.size(), LawPoint().parameters.size() + 1);
+    AssertThrow(n_history_variables <= no_history.n_independent_components,
+                ExcMessage("A law has " + std::to_string(n_history_variables) +
+                           " history variables; six are the most."));
   }
 
 
@@ -119,7 +133,7 @@ namespace Viscoplastic
                          const double    t,
                          const double    temperature) const
   {
-    LawPoint result{x, t, {}, temperature};
+    LawPoint result{x, t, {}, temperature, &no_history};
     for (unsigned int i = 0; i < parameters.size(); ++i)
       result.parameters[i] = parameters[i].value(x, t, temperature);
     prepare(result);
@@ -168,6 +182,127 @@ namespace Viscoplastic
   ViscoplasticLaw::flow(const LawStates &states, Flow *result) const
   {
     flow_at_points(*this, states, result);
+  }
+
+
+
+  SymmetricTensor<2, 3>
+  ViscoplasticLaw::history_rate(const SymmetricTensor<2, 3> & /*stress*/,
+                                const SymmetricTensor<2, 3> & /*strain*/,
+                                const Stiffness & /*stiffness*/,
+                                const LawPoint & /*point*/) const
+  {
+    return {};
+  }
+
+
+
+  SymmetricTensor<2, 3>
+  ViscoplasticLaw::history_after_step(const SymmetricTensor<2, 3> &stress,
+                                      const SymmetricTensor<2, 3> &strain,
+                                      const double                 k,
+                                      const Stiffness             &stiffness,
+                                      const LawPoint              &point) const
+  {
+    const unsigned int    n     = n_history_variables;
+    LawPoint              there = point;
+    SymmetricTensor<2, 3> alpha = *point.history;
+    there.history               = &alpha;
+    const auto increment        = [&] {
+      return k * history_rate(stress, strain, stiffness, there);
+    };
+    const auto residual = [&] { return alpha - *point.history - increment(); };
+    SymmetricTensor<2, 3> F = residual();
+    for (unsigned int iteration = 0; iteration < 50 && std::isfinite(F.norm());
+         ++iteration)
+      {
+        // The scale of each variable is its own, of one without any that of
+        // all.
+        const SymmetricTensor<2, 3> from = alpha;
+        const double scale = from.norm() + point.history->norm() + F.norm();
+        if (F.norm() <= 1e-14 * scale)
+          return alpha;
+        FullMatrix<double> jacobian(n, n);
+        Vector<double>     right_side(n), step(n);
+        for (unsigned int j = 0; j < n; ++j)
+          {
+            const double own = std::fabs(from.access_raw_entry(j)) +
+                               std::fabs(F.access_raw_entry(j)),
+                         h = 1e-6 * (own > 0. ? own : scale);
+            alpha.access_raw_entry(j) += h;
+            const SymmetricTensor<2, 3> change = residual() - F;
+            alpha                              = from;
+            for (unsigned int i = 0; i < n; ++i)
+              jacobian(i, j) = change.access_raw_entry(i) / h;
+            right_side[j] = -F.access_raw_entry(j);
+          }
+        jacobian.gauss_jordan();
+        jacobian.vmult(step, right_side);
+        const double before = F.norm();
+        for (double share = 1.; share > 1e-6; share *= 0.5)
+          {
+            for (unsigned int i = 0; i < n; ++i)
+              alpha.access_raw_entry(i) =
+                from.access_raw_entry(i) + share * step[i];
+            F = residual();
+            if (F.norm() < before)
+              break;
+          }
+        if (!(F.norm() < before)) // what rounding leaves, or nothing
+          {
+            if (before <= 1e-10 * scale)
+              return from;
+            break;
+          }
+      }
+    AssertThrow(false,
+                ExcMessage("The history variables of a step of backward Euler "
+                           "cannot be found; take shorter steps."));
+    return alpha;
+  }
+
+
+
+  ViscoplasticLaw::Tangents
+  ViscoplasticLaw::step_tangents(const SymmetricTensor<2, 3> &stress,
+                                 const SymmetricTensor<2, 3> &strain,
+                                 const double                 k,
+                                 const Stiffness             &stiffness,
+                                 const LawPoint              &point) const
+  {
+    if (n_history_variables == 0)
+      return tangents(stress, strain, stiffness, point);
+    Tangents   result;
+    const auto differentiate = [&](SymmetricTensor<4, 3>       &derivative,
+                                   const SymmetricTensor<2, 3> &at,
+                                   const double                 least,
+                                   const auto                  &G) {
+      const double h = 1e-5 * std::max(at.norm(), least);
+      for (unsigned int j = 0; j < 6; ++j)
+        {
+          SymmetricTensor<2, 3> left = at, right = at;
+          left.access_raw_entry(j) -= h;
+          right.access_raw_entry(j) += h;
+          // Both of the entries of a shear change.
+          const SymmetricTensor<2, 3> slope =
+            (G(right) - G(left)) / ((j < 3 ? 2. : 4.) * h);
+          for (unsigned int i = 0; i < 6; ++i)
+            derivative.access_raw_entry(6 * i + j) = slope.access_raw_entry(i);
+        }
+    };
+    differentiate(result.stress,
+                  stress,
+                  1e-6 * stiffness.largest_deviatoric_eigenvalue(),
+                  [&](const SymmetricTensor<2, 3> &there) {
+                    return step_rate(there, strain, k, stiffness, point);
+                  });
+    differentiate(result.strain,
+                  strain,
+                  1e-6,
+                  [&](const SymmetricTensor<2, 3> &there) {
+                    return step_rate(stress, there, k, stiffness, point);
+                  });
+    return result;
   }
 
 

@@ -35,6 +35,7 @@ namespace Viscoplastic
       {"1/time", {0., -1., 0.}},
       {"stress", {0., 0., 1.}},
       {"force", {2., 0., 1.}},
+      {"1/stress", {0., 0., -1.}},
       {"stress times time", {0., 1., 1.}},
       {"force per volume", {-1., 0., 1.}},
       {"stress/length", {-1., 0., 1.}},

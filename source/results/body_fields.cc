@@ -83,7 +83,7 @@ namespace Viscoplastic
     , u(reported_displacement(laws.stress_space.space.scene, state, difference))
     , irreversible(
         without_thermal_stress(laws.thermal.get(), state.t, state.z, rest))
-    , now(laws.at(state.t))
+    , now(laws.at(state.t, state.history))
   {
     for (const RecordedField field : fields)
       if (is_mean(field))
@@ -104,7 +104,7 @@ namespace Viscoplastic
       }
     if (cell_fields.count(RecordedField::creep_rate) > 0 &&
         scene.has_viscosity())
-      rate = evaluate_flow(laws, state.u, state.z, state.t).rate;
+      rate = evaluate_flow(laws, state, state.t).rate;
   }
 
 

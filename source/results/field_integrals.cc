@@ -121,8 +121,9 @@ namespace Viscoplastic
   {
     // 1/2 int E^-1 sigma : sigma with sigma = E eps(u) + z.
     const StressSpace<dim> &samples = discretization.stress_space;
-    const auto              before  = discretization.laws.at(old.t),
-               now                  = discretization.laws.at(state.t);
+    const FlowLaws<dim>    &laws    = discretization.laws;
+    const auto              before  = laws.at(old.t, old.history),
+               now                  = laws.at(state.t, state.history);
     std::vector<SymmetricTensor<2, 3>> strain(points->n_samples);
     std::array<double, 2>              result{{0., 0.}};
     for (const Piece &piece : cells)
@@ -140,7 +141,7 @@ namespace Viscoplastic
                            (state.z[c * samples.n_samples + s] * strain[s]);
           }
         const CellEnergies energies =
-          energies_of_cell(discretization.laws, before, now, old, state, c);
+          energies_of_cell(laws, before, now, old, state, c);
         result[0] += energies.irreversible_energy;
         result[1] += energies.viscous_dissipation;
       }

@@ -66,10 +66,8 @@ namespace Viscoplastic
                          return material->law != nullptr;
                        }))
         return;
-      const State<dim> &state = initial;
-      const double      rate =
-        evaluate_flow(discretization.laws, state.u, state.z, state.t)
-          .relaxation_rate;
+      const double rate =
+        evaluate_flow(discretization.laws, initial, initial.t).relaxation_rate;
       if (rate == 0.)
         out << "Stability limit 2/r: none without stress; r grows with the "
                "stress, and a run says where it is largest\n";
@@ -234,9 +232,8 @@ namespace Viscoplastic
     const Scene<dim> &scene = discretization.scene();
     if (!scene.has_viscosity())
       return;
-    const State<dim> &state = initial.state;
     initial.rate =
-      evaluate_flow(discretization.laws, state.u, state.z, state.t);
+      evaluate_flow(discretization.laws, initial.state, initial.state.t);
     const double rate      = initial.rate->relaxation_rate;
     const bool   has_limit = !scene.is_implicit() &&
                            !scene.is_implicit_beyond_the_limit() &&
@@ -305,6 +302,8 @@ namespace Viscoplastic
     const bool          equilibrate = parameters.initial_state.equilibrate;
     EvaluatedState<dim> initial;
     initial.state = make_initial_state(d.stress_space, equilibrate);
+    d.laws.begin_history(std::vector<bool>(d.stress_space.n_cells(), true),
+                         initial.state);
     if (!equilibrate)
       {
         check_compatibility(d, initial.state, d.loads.assemble(0.));

@@ -249,6 +249,20 @@ namespace Viscoplastic
 
   template <int dim>
   bool
+  Scene<dim>::has_history() const
+  {
+    return std::any_of(materials.begin(),
+                       materials.end(),
+                       [](const auto &material) {
+                         return material->law &&
+                                material->law->n_history_variables > 0;
+                       });
+  }
+
+
+
+  template <int dim>
+  bool
   Scene<dim>::has_thermal_strain() const
   {
     return std::any_of(materials.begin(),

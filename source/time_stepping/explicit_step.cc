@@ -54,7 +54,7 @@ namespace Viscoplastic
     const TimeStep     &step  = problem.time_step;
     const State<dim>   &old   = problem.old.state;
     StepSolution<dim>   solution(problem);
-    IrreversibleStress &z   = solution.state.z;
+    IrreversibleStress &z = solution.state.z, &history = solution.state.history;
     const auto          use = [&](const FlowRate &rate) {
       check_stability<dim>(scene.parameters, rate, step);
       solution.note(rate);
@@ -72,6 +72,8 @@ namespace Viscoplastic
         use(*problem.old_rate);
         for (std::size_t i = 0; i < z.size(); ++i)
           z[i] += step.k * problem.old_rate->rate[i];
+        for (std::size_t i = 0; i < history.size(); ++i)
+          history[i] += step.k * problem.old_rate->history_rate[i];
       }
     solve(problem, old, solution);
     if (is_heun)
@@ -84,13 +86,15 @@ namespace Viscoplastic
             solution.is_unchanged && discretization.laws.are_autonomous() ?
                   *problem.old_rate :
                   evaluate_flow(discretization.laws,
-                            predicted.u,
-                            predicted.z,
+                            predicted,
                             step.t,
                             ExactSolution<dim>::Side::before);
           use(end);
           for (std::size_t i = 0; i < z.size(); ++i)
             z[i] = 0.5 * (carried[i] + predicted.z[i] + step.k * end.rate[i]);
+          for (std::size_t i = 0; i < history.size(); ++i)
+            history[i] = 0.5 * (old.history[i] + predicted.history[i] +
+                                step.k * end.history_rate[i]);
         }
         solve(problem, predicted, solution);
       }
@@ -113,15 +117,18 @@ namespace Viscoplastic
 
   template <int dim>
   bool
-  ExplicitStep<dim>::nothing_has_changed(const StepProblem<dim>   &problem,
-                                         const IrreversibleStress &z) const
+  ExplicitStep<dim>::nothing_has_changed(const StepProblem<dim> &problem,
+                                         const State<dim>       &state) const
   {
     if (!problem.data_are_unchanged)
       return false;
     // Of rates that are zero, or as small as rounding, and of temperatures that
     // stay.
     return !discretization.scene().has_irreversible_stress() ||
-           Utilities::MPI::min(z == problem.old.state.z ? 1 : 0,
+           Utilities::MPI::min(state.z == problem.old.state.z &&
+                                   state.history == problem.old.state.history ?
+                                 1 :
+                                 0,
                                discretization.space.communicator) == 1;
   }
 
@@ -137,7 +144,7 @@ namespace Viscoplastic
     const Discretization<dim> &d     = discretization;
     State<dim>                &state = solution.state;
     // A body does not move unless its data or its z change.
-    if (nothing_has_changed(problem, state.z))
+    if (nothing_has_changed(problem, state))
       {
         // The predictor of Heun's method may have been another one.
         const ContactReport earlier = solution.report;

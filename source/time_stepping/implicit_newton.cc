@@ -176,7 +176,7 @@ namespace Viscoplastic
     : method(method)
     , d(method.discretization)
     , problem(problem)
-    , laws(d.laws.at(problem.time_step.t))
+    , laws(d.laws.at(problem.time_step.t, problem.old.state.history))
     , tangents_are_symmetric(
         method.tangent.is_constant ||
         have_symmetric_tangents(d.laws, problem.time_step.t))
@@ -210,7 +210,7 @@ namespace Viscoplastic
       {
         Heartbeat::count(Loop::newton);
         if (is_outdated)
-          method.linearize(at, z, step.t, step.k);
+          method.linearize(at, z, laws, step.k);
         const bool tangent_is_new = is_outdated;
         solve_with_tangent();
         measure_error();
@@ -231,8 +231,8 @@ namespace Viscoplastic
     solution.report.tolerance = 2. * tolerance;
 
     TimerOutput::Scope phase(method.timer, "rate");
-    solution.end_rate =
-      evaluate_flow(d.laws, solution.state.u, solution.state.z, step.t);
+    advance_history<dim>(laws, d.stress_space, step.k, solution.state);
+    solution.end_rate = evaluate_flow(d.laws, solution.state, step.t);
     solution.note(*solution.end_rate);
     return std::move(solution);
   }

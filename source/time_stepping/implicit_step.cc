@@ -35,10 +35,12 @@ namespace Viscoplastic
     if (d.laws.thermal && d.laws.thermal->changes(old.t, problem.time_step.t))
       return {};
     const auto is_zero = [&](const FlowRate &rate) {
-      const bool all_zero =
-        std::all_of(rate.rate.begin(), rate.rate.end(), [](const auto &G) {
-          return G == SymmetricTensor<2, 3>();
-        });
+      bool all_zero = true;
+      for (const IrreversibleStress *field : {&rate.rate, &rate.history_rate})
+        all_zero = all_zero &&
+                   std::all_of(field->begin(), field->end(), [](const auto &G) {
+                     return G == SymmetricTensor<2, 3>();
+                   });
       return Utilities::MPI::min(all_zero ? 1 : 0, d.space.communicator) == 1;
     };
     StepSolution<dim> solution(problem);
@@ -47,8 +49,7 @@ namespace Viscoplastic
     else
       {
         TimerOutput::Scope phase(timer, "rate");
-        solution.end_rate =
-          evaluate_flow(d.laws, old.u, old.z, problem.time_step.t);
+        solution.end_rate = evaluate_flow(d.laws, old, problem.time_step.t);
       }
     if (!is_zero(*solution.end_rate))
       return {};
@@ -85,13 +86,13 @@ namespace Viscoplastic
 
   template <int dim>
   void
-  ImplicitStep<dim>::linearize(const DistributedVector  &ghosted_u,
-                               const IrreversibleStress &z,
-                               const double              t,
-                               const double              k)
+  ImplicitStep<dim>::linearize(const DistributedVector              &ghosted_u,
+                               const IrreversibleStress             &z,
+                               const typename FlowLaws<dim>::AtTime &laws,
+                               const double                          k)
   {
     TimerOutput::Scope phase(timer, "tangent");
-    const bool         is_new = tangent.linearize(ghosted_u, z, t, k);
+    const bool         is_new = tangent.linearize(ghosted_u, z, laws, k);
     // A preconditioner that has seen other solves is not a function of what
     // is given; only that of constant tangents goes from step to step, where
     // no steps of other schemes are between.
@@ -125,7 +126,10 @@ namespace Viscoplastic
     if (preconditioner)
       {
         const State<dim> &state = accepted.state;
-        linearize(state.u, state.z, state.t, state.k);
+        linearize(state.u,
+                  state.z,
+                  discretization.laws.at(state.t, state.history),
+                  state.k);
         solver.bulk().restore(preconditioner);
       }
     // An exact solver has the factor of the last matrix, and no such state.

@@ -19,12 +19,11 @@ namespace Viscoplastic
     std::vector<SymmetricTensor<4, 3>>
     flow_tangents(const FlowLaws<dim>      &laws,
                   const NewtonIterate<dim> &at,
-                  const double              t,
-                  const double              k)
+                  const StepProblem<dim>   &problem)
     {
-      const StressSpace<dim>            &stress_space = laws.stress_space;
-      const unsigned int                 n            = stress_space.n_samples;
-      const auto                         now          = laws.at(t);
+      const StressSpace<dim> &stress_space = laws.stress_space;
+      const unsigned int      n            = stress_space.n_samples;
+      const auto now = laws.at(problem.time_step.t, problem.old.state.history);
       std::vector<SymmetricTensor<4, 3>> result(stress_space.n_cells() * n);
       std::vector<SymmetricTensor<2, 3>> strain(n);
       fail_together(stress_space.space.communicator, [&] {
@@ -40,7 +39,7 @@ namespace Viscoplastic
                                       stiffness.stress(strain[s]) +
                                         at.z[c * n + s],
                                       now.mechanical(strain[s], c, s),
-                                      k,
+                                      problem.time_step.k,
                                       stiffness,
                                       now.point(c, s)) -
                   E;
@@ -295,10 +294,7 @@ namespace Viscoplastic
     Result result{0., 0};
     if (right_side.l2_norm() > 0.)
       {
-        const auto       flow = flow_tangents(d.laws,
-                                        iterate,
-                                        problem.time_step.t,
-                                        problem.time_step.k);
+        const auto       flow = flow_tangents(d.laws, iterate, problem);
         ReductionControl control(100, 0., reduction);
         try
           {

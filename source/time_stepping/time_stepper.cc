@@ -159,7 +159,7 @@ namespace Viscoplastic
       {
         TimerOutput::Scope phase(timer, "rate");
         evaluated = as_part_of_step(state.n + 1, state.t, [&] {
-          return evaluate_flow(discretization.laws, state.u, state.z, state.t);
+          return evaluate_flow(discretization.laws, state, state.t);
         });
         rate      = &*evaluated;
       }
@@ -339,7 +339,7 @@ namespace Viscoplastic
       {
         TimerOutput::Scope phase(timer, "rate");
         end.rate = as_part_of_step(state.n, state.t, [&] {
-          return evaluate_flow(discretization.laws, state.u, state.z, state.t);
+          return evaluate_flow(discretization.laws, state, state.t);
         });
       }
     TimerOutput::Scope         phase(timer, "estimate");

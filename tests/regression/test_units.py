@@ -415,6 +415,7 @@ class Scaled:
             "time": (0, 0, 1),
             "1/time": (0, 0, -1),
             "stress": (1, 0, 0),
+            "1/stress": (-1, 0, 0),
             "stress times time": (1, 0, 1),
             "force per volume": (1, -1, 0),
             "stress/length": (1, -1, 0),

@@ -238,10 +238,11 @@ namespace
             const double  k     = sample.step_size(kr, trial, strain);
             const Tensor2 z     = sample.z(strain, old_z, k);
             const Tensor2 G =
-              sample.law->rate(sample.stiffness.stress(strain) + z,
-                               strain,
-                               sample.stiffness,
-                               sample.point);
+              sample.law->step_rate(sample.stiffness.stress(strain) + z,
+                                    strain,
+                                    k,
+                                    sample.stiffness,
+                                    sample.point);
             // Up to an error of z of 1e-12, which r multiplies.
             EXPECT_LE((z - old_z - k * G).norm(), 1e-10 * (1. + kr))
               << sample.name << ", k r = " << kr;

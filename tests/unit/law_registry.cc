@@ -64,7 +64,7 @@ namespace
           EXPECT_NE(registry.find(line), std::string::npos) << line;
           ++n_lines;
         }
-    EXPECT_EQ(n_lines, 6);
+    EXPECT_EQ(n_lines, 8);
   }
 
 
@@ -144,7 +144,7 @@ namespace
   TEST(Registry, NamesAndManual)
   {
     EXPECT_EQ(viscoplastic_law_names(),
-              "elastic|maxwell|zener|perzyna|norton|parsed");
+              "elastic|maxwell|zener|perzyna|norton|burgers|lubby2|parsed");
 
     const std::string manual = viscoplastic_law_help();
     for (const std::string name :
@@ -175,9 +175,10 @@ namespace
   TEST(Registry, RefusesAnUnknownName)
   {
     ParameterHandler prm;
-    expect_refusal([&] { make_viscoplastic_law("bingham", prm); },
-                   "There is no viscoplastic law `bingham'; the laws are "
-                   "elastic|maxwell|zener|perzyna|norton|parsed.");
+    expect_refusal(
+      [&] { make_viscoplastic_law("bingham", prm); },
+      "There is no viscoplastic law `bingham'; the laws are "
+      "elastic|maxwell|zener|perzyna|norton|burgers|lubby2|parsed.");
   }
 
 

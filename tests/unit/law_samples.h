@@ -92,6 +92,10 @@ namespace Viscoplastic::Testing
     LawPoint                         point;
   };
 
+  /// That of laws with history variables.
+  inline const Tensor2 former_history =
+    symmetric(0.3, -0.2, -0.1, 0.15, -0.25, 0.05);
+
   /// k r of the tests.
   inline const std::array<double, 6> products = {
     {0.01, 0.1, 1., 10., 100., 1000.}};
@@ -106,6 +110,7 @@ namespace Viscoplastic::Testing
       {
         const auto add = [&](const char *name, const char *entries) {
           samples.emplace_back(name, entries, E);
+          samples.back().point.history = &former_history;
         };
         add("maxwell", "set Viscosity = 0.5");
         add("zener",
@@ -122,6 +127,14 @@ namespace Viscoplastic::Testing
         add("perzyna",
             "set Yield radius = 0.2\nset Viscosity = 2\nset Hardening "
             "modulus = 10");
+        add("burgers",
+            "set Maxwell viscosity = 3\nset Kelvin modulus = 0.4\nset Kelvin "
+            "viscosity = 0.7");
+        add("lubby2",
+            "set Maxwell viscosity = 3\nset Maxwell viscosity exponent = "
+            "-0.5\nset Kelvin modulus = 0.4\nset Kelvin modulus exponent = "
+            "-0.9\nset Kelvin viscosity = 0.7\nset Kelvin viscosity exponent "
+            "= -0.6\nset Stress cap = 3");
         add("parsed",
             "set Strain rate = max(0, sigma_eq - max(0, 0.2 + 0.5*p))");
         add("parsed",

@@ -51,6 +51,19 @@ namespace
         add("norton, n = 1", norton(0.2, 1., 1e-3), 1.5 * r * 0.2);
         add("norton, n = 1.2", norton(0.2, 1.2, 1.), 1.5 * r * 0.2 * 1.2);
         add("parsed", parsed("0.3*sigma_eq", "2"), 1.5 * r * 0.6);
+        // The sum of the moduli over the viscosities.
+        const std::string kelvin = "set Maxwell viscosity = 0.5\nset Kelvin "
+                                   "modulus = 0.3\nset Kelvin viscosity = 0.2";
+        add("burgers", make_law("burgers", kelvin), 3.5 * r + 1.5);
+        // 1/(2 eta) at the cap, times 1 - m sigma_eq.
+        add("lubby2",
+            make_law("lubby2",
+                     kelvin +
+                       "\nset Maxwell viscosity exponent = -0.3\nset Kelvin "
+                       "modulus exponent = -0.2\nset Kelvin viscosity exponent "
+                       "= -0.4\nset Stress cap = 1.5"),
+            (std::exp(0.45) * 1.45 + 2.5 * std::exp(0.6) * 1.6) * r +
+              1.5 * std::exp(0.6));
         // At the temperature 2 it flows 1.2 times as fast as at 1.6.
         for (const bool hardens : {false, true})
           add(hardens ? "perzyna by temperature" : "norton by temperature",

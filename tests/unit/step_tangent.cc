@@ -103,6 +103,47 @@ namespace
 
 
 
+  // What the interface does for laws that know no better, against what those
+  // with closed forms know.
+  TEST(BackwardEuler, HistoryByNewtonsMethodAndDifferences)
+  {
+    RandomTensors random;
+    unsigned int  n_laws = 0;
+    for (const Sample &sample : all_samples())
+      if (const ViscoplasticLaw &law = *sample.law; law.n_history_variables > 0)
+        for (const double kr : products)
+          {
+            ++n_laws;
+            SCOPED_TRACE(sample.name);
+            const Stiffness &E      = sample.stiffness;
+            const LawPoint  &point  = sample.point;
+            const Tensor2    strain = random(), stress = random();
+            const double     k = sample.step_size(kr, stress, strain);
+            const Tensor2    history =
+              law.history_after_step(stress, strain, k, E, point);
+            LawPoint after = point;
+            after.history  = &history;
+            EXPECT_LE((history - former_history -
+                       k * law.history_rate(stress, strain, E, after))
+                        .norm(),
+                      1e-13 * (1. + kr));
+            EXPECT_LE((law.ViscoplasticLaw::history_after_step(
+                         stress, strain, k, E, point) -
+                       history)
+                        .norm(),
+                      1e-12);
+            const auto exact = law.step_tangents(stress, strain, k, E, point),
+                       differences = law.ViscoplasticLaw::step_tangents(
+                         stress, strain, k, E, point);
+            EXPECT_LE((differences.stress - exact.stress).norm(),
+                      1e-7 * exact.stress.norm());
+            EXPECT_LE(differences.strain.norm(), 1e-7 * exact.stress.norm());
+          }
+    EXPECT_EQ(n_laws, 4 * products.size());
+  }
+
+
+
   TEST(BackwardEuler, TangentAtTheYieldStress)
   {
     const Sample sample("perzyna", "set Yield radius = 0.5\nset Viscosity = 2");

@@ -86,8 +86,9 @@ namespace Viscoplastic::Testing
     FlowRate
     rate() const
     {
-      const State<dim> &state = accepted.state;
-      return evaluate_flow(discretization->laws, state.u, state.z, state.t);
+      return evaluate_flow(discretization->laws,
+                           accepted.state,
+                           accepted.state.t);
     }
 
     /// Make @p n steps and accept them.

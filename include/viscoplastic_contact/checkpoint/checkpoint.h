@@ -61,9 +61,8 @@ namespace Viscoplastic
     /// Which of the nodal_fields() there are.
     std::array<bool, 4> has_nodal_field;
     bool                has_estimate;
-    /// The number of fields at samples, of which none is missing before the
-    /// last.
-    unsigned int n_sample_fields;
+    /// Which of the sample_fields() there are.
+    std::array<bool, 7> has_sample_field;
   };
 
   /**

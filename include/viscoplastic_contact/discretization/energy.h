@@ -51,7 +51,7 @@ namespace Viscoplastic
            thermal_work = 0.;
   };
 
-  /// @p before and @p now are laws.at() of the times of both states.
+  /// @p before and @p now are laws.at() of both states.
   template <int dim>
   CellEnergies
   energies_of_cell(const FlowLaws<dim>                  &laws,

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
+#include <viscoplastic_contact/discretization/state.h>
 #include <viscoplastic_contact/discretization/thermal_strain.h>
 #include <viscoplastic_contact/laws/viscoplastic_law.h>
 
@@ -59,7 +60,8 @@ namespace Viscoplastic
         return laws.materials[material(cell)].law;
       }
 
-      /// The point at which law(cell) is evaluated for one of its samples.
+      /// The point at which law(cell) is evaluated for one of its samples, with
+      /// the history variables of at().
       LawPoint
       point(const std::size_t cell, const unsigned int s) const;
 
@@ -99,7 +101,9 @@ namespace Viscoplastic
 
     private:
       friend class FlowLaws;
-      AtTime(const FlowLaws &laws, const double t);
+      AtTime(const FlowLaws           &laws,
+             const double              t,
+             const IrreversibleStress *history);
 
       unsigned int
       material(const std::size_t cell) const
@@ -115,16 +119,29 @@ namespace Viscoplastic
 
       std::shared_ptr<const typename ThermalStrain<dim>::Samples> thermal;
 
-      const FlowLaws       &laws;
-      const double          t;
-      std::vector<LawPoint> uniform; // a material
+      const FlowLaws           &laws;
+      const double              t;
+      const IrreversibleStress *history; // null if nobody has any
+      std::vector<LawPoint>     uniform; // a material
     };
 
+    /// Without history variables: of laws before the first step.
     AtTime
     at(const double t) const
     {
-      return AtTime(*this, t);
+      return AtTime(*this, t, nullptr);
     }
+
+    /// With these history variables, which stay in use.
+    AtTime
+    at(const double t, const IrreversibleStress &history) const
+    {
+      return AtTime(*this, t, history.empty() ? nullptr : &history);
+    }
+
+    /// Give the history variables of these cells their initial values.
+    void
+    begin_history(const std::vector<bool> &cells, State<dim> &state) const;
 
     /**
      * What a manufactured solution adds to G at a sample,
@@ -153,7 +170,7 @@ namespace Viscoplastic
     std::vector<unsigned int> material_of_cell;
     /// The parameters at each sample; empty unless those of some law depend on
     /// position but not on time.
-    std::vector<std::array<double, 6>> parameters;
+    std::vector<LawParameters> parameters;
   };
 
 
@@ -171,15 +188,16 @@ namespace Viscoplastic
     /// The sample with the largest rate, or the first one of those. Collective
     /// result.
     Point<3> critical_position = {};
+    /// H at each sample, where there are history variables.
+    IrreversibleStress history_rate = {};
   };
 
   /// The rate G at all samples of all cells, by one evaluation of the law a
-  /// cell; a source is that of the step on this side of t. Collective.
+  /// cell, and H; a source is that of the step on this side of t. Collective.
   template <int dim>
   FlowRate
   evaluate_flow(const FlowLaws<dim>                    &laws,
-                const DistributedVector                &ghosted_u,
-                const IrreversibleStress               &z,
+                const State<dim>                       &state,
                 const double                            t,
                 const typename ExactSolution<dim>::Side side =
                   ExactSolution<dim>::Side::after);

@@ -18,4 +18,13 @@ namespace Viscoplastic
                                const IrreversibleStress &old_z,
                                const double              k,
                                const IrreversibleStress &start);
+
+  /// Backward Euler for the history variables of a state, whose stress is that
+  /// of the end of the step, with those of the beginning. Collective.
+  template <int dim>
+  void
+  advance_history(const typename FlowLaws<dim>::AtTime &laws,
+                  const StressSpace<dim>               &stress_space,
+                  const double                          k,
+                  State<dim>                           &state);
 } // namespace Viscoplastic

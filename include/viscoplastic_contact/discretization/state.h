@@ -34,6 +34,10 @@ namespace Viscoplastic
     /// relaxed.
     IrreversibleStress remembered_error;
 
+    /// The history variables alpha_n of the laws at the samples, their time
+    /// error and the slope of their rates; empty unless a law has any.
+    IrreversibleStress history, history_error, history_slope;
+
     /// What contact has done in the step that led here; no points without
     /// friction and contact that opens.
     ContactState contact;
@@ -54,10 +58,13 @@ namespace Viscoplastic
   auto
   sample_fields(StateType &state)
   {
-    return std::array<decltype(&state.z), 4>{{&state.z,
+    return std::array<decltype(&state.z), 7>{{&state.z,
                                               &state.time_error,
                                               &state.rate_slope,
-                                              &state.remembered_error}};
+                                              &state.remembered_error,
+                                              &state.history,
+                                              &state.history_error,
+                                              &state.history_slope}};
   }
 
 

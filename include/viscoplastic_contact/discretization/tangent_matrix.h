@@ -27,15 +27,16 @@ namespace Viscoplastic
     const bool is_constant;
 
     /**
-     * Take the tangents at the strain of @p ghosted_u and at z, at time t, and
+     * Take the tangents of a step at the strain of @p ghosted_u and at z, of
+     * the laws at its end with the history variables of its beginning, and
      * make the matrix of them, unless it has them already. Returns whether it
      * is another matrix now. Collective.
      */
     bool
-    linearize(const DistributedVector  &ghosted_u,
-              const IrreversibleStress &z,
-              const double              t,
-              const double              k);
+    linearize(const DistributedVector              &ghosted_u,
+              const IrreversibleStress             &z,
+              const typename FlowLaws<dim>::AtTime &now,
+              const double                          k);
 
     const DistributedMatrix &
     matrix() const

@@ -42,7 +42,10 @@ namespace Viscoplastic
    * effect on u. That errors of z relax, too, is left out: where the stress
    * follows from the loads it does not happen. In linear laws that depend on
    * the strain, what makes no stress fades all the same. Forces feel only what
-   * makes stress, and that relaxes with the law's own tangent in them.
+   * makes stress, and that relaxes with the law's own tangent in them. History
+   * variables have such a sum of their own; what becomes of it in a step, and
+   * what it does to G meanwhile, is the difference of two steps at the same
+   * stress.
    *
    * Friction: slip that turns in a step has the direction of its end. In an
    * elastic body the error of what is linear between the steps satisfies
@@ -71,9 +74,9 @@ namespace Viscoplastic
 
     explicit ErrorEstimator(const Scene<dim> &scene);
 
-    /// How many of the sample_fields() of a state the scene has.
-    static unsigned int
-    n_sample_fields(const Scene<dim> &scene);
+    /// Which of the sample_fields() of a state the scene has.
+    static std::array<bool, 7>
+    has_sample_fields(const Scene<dim> &scene);
 
     /// Set the fields of time errors and the estimate of a state that the
     /// projections of the initial data have made. Returns the squares that

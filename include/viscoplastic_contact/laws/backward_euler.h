@@ -5,7 +5,9 @@
 
 namespace Viscoplastic
 {
-  /// The equation z - z_old - k G(t_n, E eps + z, eps) = 0 of one sample.
+  /// The equation z - z_old - k G(t_n, E eps + z, eps) = 0 of one sample. Here
+  /// and below, G of a law with history variables is its step_rate(): @p point
+  /// has those of the beginning of the step.
   struct BackwardEulerEquation
   {
     const ViscoplasticLaw       &law;
@@ -18,7 +20,8 @@ namespace Viscoplastic
     SymmetricTensor<2, 3>
     residual(const SymmetricTensor<2, 3> &z) const
     {
-      return z - old_z - k * law.rate(elastic + z, strain, stiffness, point);
+      return z - old_z -
+             k * law.step_rate(elastic + z, strain, k, stiffness, point);
     }
 
     /// The norm of the residual; not finite where the law has no value, which a
@@ -59,7 +62,7 @@ namespace Viscoplastic
           if (!std::isfinite(size))
             return {};
           const auto tangents =
-            law.tangents(elastic + z, strain, stiffness, point);
+            law.step_tangents(elastic + z, strain, k, stiffness, point);
           const SymmetricTensor<2, 3> step =
             -1. * (invert(identity_tensor<3>() - k * tangents.stress) * F);
           const double step_size = norm(step);

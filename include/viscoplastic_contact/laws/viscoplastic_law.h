@@ -47,6 +47,7 @@ namespace Viscoplastic
     {
       positive,
       non_negative,
+      non_positive,
       at_least_one,
       poissons_ratio, // larger than -1 and smaller than 1/2
       any             // finite
@@ -108,17 +109,25 @@ namespace Viscoplastic
 
 
 
+  /// The parameters of a law at a point.
+  using LawParameters = std::array<double, 8>;
+
+  /// The history variables of a law at a point, which are the independent
+  /// components of a symmetric tensor if it has six. They start from zero.
+  inline const SymmetricTensor<2, 3> no_history;
+
   /// Where and when a law is evaluated (in 2D, z = 0), and what the
   /// parameters of the law are there, in the order of its constructor; behind
   /// them there may be what the law derives from them, see
   /// ViscoplasticLaw::prepare(). The temperature is that of the scene, 0 where
-  /// there is none.
+  /// there is none. The history variables stay where they are stored.
   struct LawPoint
   {
-    Point<3>              x;
-    double                t = 0;
-    std::array<double, 6> parameters{};
-    double                temperature = 0.;
+    Point<3>                     x;
+    double                       t = 0;
+    LawParameters                parameters{};
+    double                       temperature = 0.;
+    const SymmetricTensor<2, 3> *history     = &no_history;
   };
 
   /// States at several points of one body, such as those of a cell.
@@ -148,7 +157,13 @@ namespace Viscoplastic
    *
    *     sigma' = E eps(u') + G(t, sigma, eps(u)),
    *
-   * also the rate of the irreversible stress z = sigma - E eps(u). A law knows
+   * also the rate of the irreversible stress z = sigma - E eps(u). Beside z a
+   * law may remember up to six scalars alpha at each point, its history
+   * variables, with rates of their own,
+   *
+   *     alpha' = H(t, sigma, eps(u), alpha),
+   *
+   * on which G may depend. A law knows
    * no mesh and has no state: all its functions are const and depend on their
    * arguments only, so cells can be visited in any order and by several
    * threads. G must be Lipschitz in stress and strain, (2.8).
@@ -231,8 +246,69 @@ namespace Viscoplastic
              const Stiffness             &stiffness,
              const LawPoint              &point) const = 0;
 
-    /// Whether the derivatives depend on the point alone: G is linear in stress
-    /// and strain, up to a constant.
+    /// The number of history variables: the first ones of point.history.
+    const unsigned int n_history_variables;
+
+    /// Their values when the material begins to exist, where they are not the
+    /// zeros that @p history comes with.
+    virtual void
+    set_initial_history(const LawPoint & /*point*/,
+                        SymmetricTensor<2, 3> & /*history*/) const
+    {}
+
+    /// H, per time, in components as the history variables.
+    virtual SymmetricTensor<2, 3>
+    history_rate(const SymmetricTensor<2, 3> &stress,
+                 const SymmetricTensor<2, 3> &strain,
+                 const Stiffness             &stiffness,
+                 const LawPoint              &point) const;
+
+    /**
+     * Backward Euler for the history variables at a given stress: the alpha
+     * that solves
+     *
+     *     alpha = point.history + k H(t, sigma, eps, alpha).
+     *
+     * By Newton's method with differences, unless a law knows better. Throws
+     * ExcMessage if it finds none.
+     */
+    virtual SymmetricTensor<2, 3>
+    history_after_step(const SymmetricTensor<2, 3> &stress,
+                       const SymmetricTensor<2, 3> &strain,
+                       const double                 k,
+                       const Stiffness             &stiffness,
+                       const LawPoint              &point) const;
+
+    /// G with the history variables after a step of backward Euler to this
+    /// stress from those of the point: a function of stress and strain alone.
+    SymmetricTensor<2, 3>
+    step_rate(const SymmetricTensor<2, 3> &stress,
+              const SymmetricTensor<2, 3> &strain,
+              const double                 k,
+              const Stiffness             &stiffness,
+              const LawPoint              &point) const
+    {
+      if (n_history_variables == 0)
+        return rate(stress, strain, stiffness, point);
+      const SymmetricTensor<2, 3> history =
+        history_after_step(stress, strain, k, stiffness, point);
+      LawPoint after = point;
+      after.history  = &history;
+      return rate(stress, strain, stiffness, after);
+    }
+
+    /// The derivatives of step_rate(): of a law with history variables by
+    /// differences, unless it knows better.
+    virtual Tangents
+    step_tangents(const SymmetricTensor<2, 3> &stress,
+                  const SymmetricTensor<2, 3> &strain,
+                  const double                 k,
+                  const Stiffness             &stiffness,
+                  const LawPoint              &point) const;
+
+    /// Whether these and tangents() depend on the point and k alone, not on its
+    /// history: G and H are linear in stress, strain and history, up to a
+    /// constant.
     virtual bool
     has_constant_tangents() const
     {
@@ -269,7 +345,8 @@ namespace Viscoplastic
 
     /**
      * The rate r >= 0, 1/time, at which stress relaxes at fixed strain: at
-     * least the largest eigenvalue of -dG/dsigma at this stress. Forward Euler
+     * least the largest eigenvalue of -dG/dsigma at this stress, of a law with
+     * history variables that of -d(G, H)/d(sigma, alpha). Forward Euler
      * is stable for time steps up to 2/r. A law whose rate may jump to a larger
      * value within one step returns the larger one.
      */
@@ -289,7 +366,8 @@ namespace Viscoplastic
 
     /**
      * A: the flow dissipates the power -G : A, unit of strain. E^-1 sigma
-     * unless part of the energy is stored elsewhere.
+     * unless part of the energy is stored elsewhere. Not used of laws with
+     * history variables, which dissipate what they do not store.
      */
     virtual SymmetricTensor<2, 3>
     driving_strain(const SymmetricTensor<2, 3> &stress,
@@ -350,7 +428,8 @@ namespace Viscoplastic
     {}
 
     /// Points will hold the values of the parameters in this order.
-    explicit ViscoplasticLaw(std::vector<LawParameter> parameters);
+    explicit ViscoplasticLaw(std::vector<LawParameter> parameters,
+                             const unsigned int        n_history_variables = 0);
 
     const std::vector<LawParameter> parameters;
   };

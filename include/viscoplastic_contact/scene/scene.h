@@ -130,6 +130,10 @@ namespace Viscoplastic
     bool
     has_viscosity() const;
 
+    /// Whether a law has history variables.
+    bool
+    has_history() const;
+
     /// Whether all steps are of backward Euler; known with the mesh, as the
     /// viscosity is.
     bool

@@ -48,11 +48,11 @@ namespace Viscoplastic
           const State<dim>       &guess,
           StepSolution<dim>      &solution);
 
-    /// Whether the body has the same data and the same z as in the state
-    /// before. Collective.
+    /// Whether the body has the same data, the same z and the same history as
+    /// in the state before. Collective.
     bool
-    nothing_has_changed(const StepProblem<dim>   &problem,
-                        const IrreversibleStress &z) const;
+    nothing_has_changed(const StepProblem<dim> &problem,
+                        const State<dim>       &state) const;
 
     const Discretization<dim> &discretization;
     const bool                 is_heun;

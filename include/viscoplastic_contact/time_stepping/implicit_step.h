@@ -69,10 +69,10 @@ namespace Viscoplastic
     /// The matrix and the solver for tangents at a strain, as a function of
     /// what is given and the mesh alone.
     void
-    linearize(const DistributedVector  &ghosted_u,
-              const IrreversibleStress &z,
-              const double              t,
-              const double              k);
+    linearize(const DistributedVector              &ghosted_u,
+              const IrreversibleStress             &z,
+              const typename FlowLaws<dim>::AtTime &laws,
+              const double                          k);
 
     const Discretization<dim> &discretization;
     TimerOutput               &timer;

@@ -121,6 +121,7 @@ namespace Viscoplastic
       state.t         = problem.time_step.t;
       state.k         = problem.time_step.k;
       state.initial_u = problem.old.state.initial_u;
+      state.history   = problem.old.state.history;
     }
 
     /// The body stays where it is: the state becomes the old one, at rest, but

@@ -1,0 +1,340 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+
+#include <viscoplastic_contact/laws/pointwise_law.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace Viscoplastic
+{
+  LawDescription
+  burgers_description();
+  LawDescription
+  lubby2_description();
+
+  namespace
+  {
+    /**
+     * A spring, a dashpot and a Kelvin body in series. With s = dev sigma and
+     * the strain e of the Kelvin body, which the history variables are,
+     *
+     *     e' = (s - 2 G_K e)/(2 eta_K),   G = -E (s/(2 eta_M) + e').
+     *
+     * In Lubby2 eta_M, G_K and eta_K are those without stress times exp(m
+     * sigma_eq), exp(k_1 sigma_eq) and exp(k_2 sigma_eq), with sigma_eq of the
+     * cap beyond it.
+     */
+    class Burgers final : public PointwiseLaw<Burgers>
+    {
+    public:
+      Burgers(const LawSection &section, const bool is_linear)
+        : PointwiseLaw(read(section, is_linear),
+                       SymmetricTensor<2, 3>::n_independent_components)
+        , is_linear(is_linear)
+      {}
+
+      SymmetricTensor<2, 3>
+      rate(const SymmetricTensor<2, 3> &stress,
+           const SymmetricTensor<2, 3> &strain,
+           const Stiffness             &stiffness,
+           const LawPoint              &point) const override
+      {
+        return stiffness.stress(-coefficients(stress, point).maxwell *
+                                  deviator(stress) -
+                                history_rate(stress, strain, stiffness, point));
+      }
+
+      SymmetricTensor<2, 3>
+      history_rate(const SymmetricTensor<2, 3> &stress,
+                   const SymmetricTensor<2, 3> & /*strain*/,
+                   const Stiffness & /*stiffness*/,
+                   const LawPoint &point) const override
+      {
+        const Coefficients c = coefficients(stress, point);
+        return c.kelvin * (deviator(stress) - c.modulus * *point.history);
+      }
+
+      SymmetricTensor<2, 3>
+      history_after_step(const SymmetricTensor<2, 3> &stress,
+                         const SymmetricTensor<2, 3> & /*strain*/,
+                         const double k,
+                         const Stiffness & /*stiffness*/,
+                         const LawPoint &point) const override
+      {
+        const Coefficients c = coefficients(stress, point);
+        return (*point.history + k * c.kelvin * deviator(stress)) /
+               (1. + k * c.kelvin * c.modulus);
+      }
+
+      Tangents
+      tangents(const SymmetricTensor<2, 3> &stress,
+               const SymmetricTensor<2, 3> &strain,
+               const Stiffness             &stiffness,
+               const LawPoint              &point) const override
+      {
+        return step_tangents(stress, strain, 0., stiffness, point);
+      }
+
+      /// After a step e' = (s - 2 G_K e_old)/(2 (eta_K + k G_K)).
+      Tangents
+      step_tangents(const SymmetricTensor<2, 3> &stress,
+                    const SymmetricTensor<2, 3> & /*strain*/,
+                    const double     k,
+                    const Stiffness &stiffness,
+                    const LawPoint  &point) const override
+      {
+        const Coefficients    c       = coefficients(stress, point);
+        const double          damping = 1. / (1. + k * c.kelvin * c.modulus);
+        SymmetricTensor<4, 3> slope =
+          (c.maxwell + damping * c.kelvin) * deviator_tensor<3>();
+        const SymmetricTensor<2, 3> s    = deviator(stress);
+        const double                size = s.norm();
+        if (!is_linear && size > 0.)
+          slope += outer_product(
+            c.maxwell_slope * s +
+              damping * damping *
+                (c.kelvin_slope - k * c.kelvin * c.kelvin * c.modulus_slope) *
+                (s - c.modulus * *point.history) -
+              damping * c.kelvin * c.modulus_slope * *point.history,
+            std::sqrt(1.5) / size * s);
+        Tangents result;
+        result.stress = -1. * stiffness.tensor() * slope;
+        return result;
+      }
+
+      bool
+      has_constant_tangents() const override
+      {
+        return is_linear;
+      }
+
+      bool
+      has_symmetric_tangents() const override
+      {
+        return is_linear;
+      }
+
+      /// The largest eigenvalue of the matrix of sigma and e, in which what
+      /// turns with the stress of Lubby2 counts by its norm.
+      double
+      relaxation_rate(const SymmetricTensor<2, 3> &stress,
+                      const SymmetricTensor<2, 3> & /*strain*/,
+                      const Stiffness &stiffness,
+                      const LawPoint  &point) const override
+      {
+        const Coefficients c = coefficients(stress, point);
+        const double       E = stiffness.largest_deviatoric_eigenvalue();
+        const SymmetricTensor<2, 3> of_kelvin =
+          c.kelvin_slope * (deviator(stress) - c.modulus * *point.history) -
+          c.kelvin * c.modulus_slope * *point.history;
+        const double of_stress =
+                       E * (c.maxwell + c.kelvin +
+                            std::sqrt(1.5) *
+                              (c.maxwell_slope * deviator(stress) + of_kelvin)
+                                .norm()),
+                     of_strain = c.kelvin * c.modulus,
+                     coupling  = 4. * E * of_strain *
+                                (c.kelvin + std::sqrt(1.5) * of_kelvin.norm()),
+                     difference = of_stress - of_strain;
+        return 0.5 * (of_stress + of_strain +
+                      std::sqrt(difference * difference + coupling));
+      }
+
+      bool
+      deviatoric_flow() const override
+      {
+        return true;
+      }
+
+      bool
+      has_own_energy() const override
+      {
+        return true;
+      }
+
+      double
+      stored_energy(const SymmetricTensor<2, 3> &stress,
+                    const SymmetricTensor<2, 3> & /*strain*/,
+                    const Stiffness &stiffness,
+                    const LawPoint  &point) const override
+      {
+        return 0.5 * (stress * stiffness.strain(stress) +
+                      coefficients(stress, point).modulus *
+                        (*point.history * *point.history));
+      }
+
+      bool
+      has_cap() const override
+      {
+        return !is_linear;
+      }
+
+      bool
+      is_beyond_cap(const SymmetricTensor<2, 3> &stress,
+                    const LawPoint              &point) const override
+      {
+        return !is_linear && von_mises(stress) > point.parameters[cap];
+      }
+
+    private:
+      // In the order of read(). Without the last four, they are zero.
+      enum
+      {
+        maxwell_viscosity,
+        kelvin_modulus,
+        kelvin_viscosity,
+        maxwell_exponent,
+        modulus_exponent,
+        kelvin_exponent,
+        cap
+      };
+
+      static std::vector<LawParameter>
+      read(const LawSection &section, const bool is_linear)
+      {
+        std::vector<LawParameter> result;
+        for (const char *entry :
+             {"Maxwell viscosity", "Kelvin modulus", "Kelvin viscosity"})
+          result.emplace_back(section, entry, LawParameter::Range::positive);
+        if (is_linear)
+          return result;
+        for (const char *entry : {"Maxwell viscosity exponent",
+                                  "Kelvin modulus exponent",
+                                  "Kelvin viscosity exponent"})
+          result.emplace_back(section,
+                              entry,
+                              LawParameter::Range::non_positive);
+        result.emplace_back(section,
+                            "Stress cap",
+                            LawParameter::Range::positive);
+        return result;
+      }
+
+      /// 1/(2 eta_M), 1/(2 eta_K), 2 G_K and their derivatives by sigma_eq.
+      struct Coefficients
+      {
+        double maxwell, kelvin, modulus, maxwell_slope = 0., kelvin_slope = 0.,
+                                         modulus_slope = 0.;
+      };
+
+      Coefficients
+      coefficients(const SymmetricTensor<2, 3> &stress,
+                   const LawPoint              &point) const
+      {
+        const auto  &p = point.parameters;
+        Coefficients result{0.5 / p[maxwell_viscosity],
+                            0.5 / p[kelvin_viscosity],
+                            2. * p[kelvin_modulus]};
+        if (is_linear)
+          return result;
+        const double sigma_eq = von_mises(stress),
+                     capped   = std::min(sigma_eq, p[cap]);
+        result.maxwell *= std::exp(-p[maxwell_exponent] * capped);
+        result.kelvin *= std::exp(-p[kelvin_exponent] * capped);
+        result.modulus *= std::exp(p[modulus_exponent] * capped);
+        if (sigma_eq < p[cap])
+          {
+            result.maxwell_slope = -p[maxwell_exponent] * result.maxwell;
+            result.kelvin_slope  = -p[kelvin_exponent] * result.kelvin;
+            result.modulus_slope = p[modulus_exponent] * result.modulus;
+          }
+        return result;
+      }
+
+      const bool is_linear;
+    };
+
+
+
+    void
+    declare(ParameterHandler  &prm,
+            const std::string &entry,
+            const std::string &value,
+            const std::string &help)
+    {
+      prm.declare_entry(entry, value, Patterns::Anything(), help);
+    }
+
+    void
+    declare_burgers(ParameterHandler &prm)
+    {
+      const std::string expression =
+        ", an expression of position and t. Unit: ";
+      declare(prm,
+              "Maxwell viscosity",
+              "1",
+              "The shear viscosity eta_M > 0 of steady creep" + expression +
+                "stress times time.");
+      declare(
+        prm,
+        "Kelvin modulus",
+        "1",
+        "The shear modulus G_K > 0, from which transient creep comes back" +
+          expression + "stress.");
+      declare(prm,
+              "Kelvin viscosity",
+              "1",
+              "The shear viscosity eta_K > 0 of transient creep" + expression +
+                "stress times time.");
+    }
+  } // namespace
+
+
+
+  LawDescription
+  burgers_description()
+  {
+    LawDescription law;
+    law.name = "burgers";
+    law.help =
+      "G = -E (dev(sigma)/(2 eta_M) + e'), e' = (dev(sigma) - 2 G_K "
+      "e)/(2 eta_K): a Maxwell and a Kelvin body in series, steady creep "
+      "after a transient one, which comes back when the load has gone. The "
+      "deviator e, the strain of the Kelvin body, is the history of the law. "
+      "Under a constant stress dev(eps) = dev(sigma) (1/mu + t/eta_M + (1 - "
+      "exp(-t G_K/eta_K))/G_K)/2. Reference: W. N. Findley, J. S. Lai, K. "
+      "Onaran, Creep and Relaxation of Nonlinear Viscoelastic Materials, "
+      "North-Holland 1976, chapter 5.";
+    law.declare = declare_burgers;
+    law.make    = [](const LawSection &section) {
+      return std::make_unique<Burgers>(section, /* is_linear = */ true);
+    };
+    return law;
+  }
+
+
+
+  LawDescription
+  lubby2_description()
+  {
+    LawDescription law;
+    law.name = "lubby2";
+    law.help =
+      "burgers for rock salt: eta_M, G_K and eta_K, given for small stresses, "
+      "are multiplied by exp(m sigma_eq), exp(k_1 sigma_eq) and exp(k_2 "
+      "sigma_eq) with the von Mises stress sigma_eq and exponents that are "
+      "zero or negative. Reference: K.-H. Lux, Gebirgsmechanischer Entwurf "
+      "und Felderfahrungen im Salzkavernenbau, Enke 1984.";
+    law.declare = [](ParameterHandler &prm) {
+      declare_burgers(prm);
+      for (const auto &[name, symbol] :
+           {std::make_pair("Maxwell viscosity", "m"),
+            std::make_pair("Kelvin modulus", "k_1"),
+            std::make_pair("Kelvin viscosity", "k_2")})
+        declare(prm,
+                name + std::string(" exponent"),
+                "0",
+                symbol + std::string(" <= 0, an expression of position and t. "
+                                     "Unit: 1/stress."));
+      declare(prm,
+              "Stress cap",
+              "10",
+              "The von Mises stress beyond which these factors stay as they "
+              "are, an expression of position and t. Unit: stress.");
+    };
+    law.make = [](const LawSection &section) {
+      return std::make_unique<Burgers>(section, /* is_linear = */ false);
+    };
+    return law;
+  }
+} // namespace Viscoplastic

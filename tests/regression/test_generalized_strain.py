@@ -298,7 +298,8 @@ class Block(TestCase):
         }
         direct = self.block(**regular)
         for ranks in 1, 2, 3:
-            other = self.block(ranks, **{**regular, "Solver/Linear solver": "multigrid"})
+            regular["Solver/Linear solver"] = "multigrid"
+            other = self.block(ranks, **regular)
             self.assertSame(other, direct, 1e-9)
 
     def test_force_of_a_strain(self):

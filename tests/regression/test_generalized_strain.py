@@ -302,6 +302,23 @@ class Block(TestCase):
             other = self.block(ranks, **regular)
             self.assertSame(other, direct, 1e-9)
 
+    def test_new_meshes(self):
+        """On meshes that change the strain is that of a mesh that does not."""
+        adaptive = self.block(
+            **{
+                "Loads/Axial force": "0.02*t",
+                "Geometry/Global refinements": 1,
+                "Mesh refinement/Strategy": "residual",
+                "Mesh refinement/Every n steps": 1,
+            }
+        )
+        self.assertGreater(adaptive["cells"][-1], adaptive["cells"][0])
+        stored = adaptive["stored_energy"][-1]
+        # measured: 2e-5, and 4e-4 of the strain
+        self.assertLess(abs(adaptive["adaptation_energy"][-1]), 1e-4 * stored)
+        strain = self.block(**{"Loads/Axial force": "0.02*t"})["axial_strain"]
+        self.assertClose(adaptive["axial_strain"], strain, relative=1e-3)
+
     def test_force_of_a_strain(self):
         """The force that belongs to a given strain gives that strain."""
         once = {"Time/Phases": "1: 1"}

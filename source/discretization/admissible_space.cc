@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <deal.II/base/bounding_box.h>
 #include <deal.II/base/mpi.h>
 #include <deal.II/dofs/dof_tools.h>
 #include <deal.II/lac/trilinos_sparsity_pattern.h>
@@ -124,20 +125,12 @@ namespace Viscoplastic
     double
     size_of_coarse_mesh(const Triangulation<dim> &triangulation)
     {
-      Point<dim> least, most;
-      for (unsigned int d = 0; d < dim; ++d)
-        {
-          least[d] = std::numeric_limits<double>::max();
-          most[d]  = -least[d];
-        }
+      std::vector<Point<dim>> points;
       for (const auto &cell : triangulation.cell_iterators_on_level(0))
         for (const unsigned int v : cell->vertex_indices())
-          for (unsigned int d = 0; d < dim; ++d)
-            {
-              least[d] = std::min(least[d], cell->vertex(v)[d]);
-              most[d]  = std::max(most[d], cell->vertex(v)[d]);
-            }
-      return least.distance(most);
+          points.push_back(cell->vertex(v));
+      const auto corners = BoundingBox<dim>(points).get_boundary_points();
+      return corners.first.distance(corners.second);
     }
 
 

@@ -57,6 +57,10 @@ namespace Viscoplastic
       largest.reduce(space.communicator);
       result.position   = largest.position();
       result.boundaries = boundaries_at(space, result.position);
+      const auto axial  = space.owned_axial();
+      result.is_axial =
+        Utilities::MPI::max(axial ? std::abs(forces.begin()[*axial]) : 0.,
+                            space.communicator) > largest.value();
     }
 
 

@@ -37,6 +37,9 @@ namespace Viscoplastic
   {
     SharedRows<dim, double>                    rows;
     LinearAlgebra::distributed::Vector<double> x, y;
+    /// The column of an unknown beyond the mesh, which the last rank owns; its
+    /// row by symmetry.
+    std::vector<double> beyond_mesh;
   };
 
 
@@ -212,8 +215,7 @@ namespace Viscoplastic
       return n_blocks[1] <= largest_shared_part * n_blocks[0];
     };
     // What differs in single precision does so in double precision, too.
-    if (!has_four_doubles() || hierarchy.end_of_mesh * dim < matrix.m() ||
-        !is_shared(level.matrix_rows()))
+    if (!has_four_doubles() || !is_shared(level.matrix_rows()))
       return;
     auto result = std::make_unique<Operator>();
     result->rows.set_values(matrix_rows,
@@ -222,6 +224,10 @@ namespace Viscoplastic
       return;
     result->x.reinit(level.x.get_partitioner());
     result->y.reinit(level.x.get_partitioner());
+    if (hierarchy.end_of_mesh * dim < matrix.m())
+      for (const auto row : matrix.locally_owned_range_indices())
+        result->beyond_mesh.push_back(
+          matrix.el(row, hierarchy.end_of_mesh * dim));
     shared_matrix = std::move(result);
   }
 
@@ -378,6 +384,21 @@ namespace Viscoplastic
         double *const to = y.begin() + (nodes[i] - hierarchy.begin) * dim;
         for (unsigned int d = 0; d < dim; ++d)
           to[d] = v.begin()[i * dim + d];
+      }
+    if (hierarchy.end_of_mesh * dim < matrix.m())
+      {
+        const auto       &column = shared_matrix->beyond_mesh;
+        const std::size_t n      = hierarchy.first_level.size() * dim;
+        const bool        is_own = n < excluded.size();
+        // The unknown, and its row.
+        std::vector<double> sums{is_own ? x.begin()[n] : 0., 0.};
+        for (std::size_t i = 0; i < n; ++i)
+          sums[1] += column[i] * x.begin()[i];
+        Utilities::MPI::sum(sums, communicator, sums);
+        for (std::size_t i = 0; i < n; ++i)
+          y.begin()[i] += column[i] * sums[0];
+        if (is_own)
+          y.begin()[n] = column[n] * sums[0] + sums[1];
       }
     return true;
   }

@@ -212,11 +212,15 @@ namespace Viscoplastic
     message << "The initial data are not in equilibrium with the loads at "
                "t = 0, (2.12): the relative violation is "
             << violation.relative << ", more than " << tolerance
-            << "; it is largest at x = (" << violation.position << "), "
-            << (violation.boundaries.empty() ?
-                  "inside of the body" :
-                  "on boundary " + list(violation.boundaries))
-            << "; start with loads that the initial stress balances, or set "
+            << "; it is largest ";
+    if (violation.is_axial)
+      message << "in 'Loads/Axial force'";
+    else
+      message << "at x = (" << violation.position << "), "
+              << (violation.boundaries.empty() ?
+                    "inside of the body" :
+                    "on boundary " + list(violation.boundaries));
+    message << "; start with loads that the initial stress balances, or set "
                "'Initial state/Equilibrate'.";
     AssertThrow(violation.relative <= tolerance, ExcMessage(message.str()));
   }

@@ -5,7 +5,7 @@ and in 3D."""
 
 import numpy as np
 
-from harness import DEFECTS, EFFORT, TestCase, main, run
+from harness import TestCase, main, run
 
 E, NU = 2.0, 0.3
 SOLVERS = "direct", "multigrid", "algebraic multigrid"
@@ -187,11 +187,73 @@ class Cylinder(TestCase):
                 self.assertLess(effectivity, 1.5)
 
 
+    def test_creep(self):
+        """Power-law creep of a cylinder with free ends, against linear elements in r
+        and Heun's method here."""
+        rate, n, p, cells, steps = 30, 3, 0.1, 100, 100
+        r = np.linspace(1, 2, cells + 1)
+        middle = (r[1:] + r[:-1]) / 2
+        nodes = np.stack(
+            [np.arange(cells), np.arange(cells) + 1, np.full(cells, cells + 1)], axis=1
+        )
+        B = np.zeros((cells, 3, 3))  # strains rr, tt, zz of u at both ends and e
+        B[:, 0, 1] = 1 / np.diff(r)
+        B[:, 0, 0] = -B[:, 0, 1]
+        B[:, 1, 0] = B[:, 1, 1] = 0.5 / middle
+        B[:, 2, 2] = 1
+        C = E / (1 + NU) * (np.eye(3) + NU / (1 - 2 * NU))
+        forces = np.einsum("mki,kl,m->mil", B, C, middle * np.diff(r))
+        K = np.zeros((cells + 2, cells + 2))
+        for element, dofs in zip(forces @ B, nodes):
+            K[np.ix_(dofs, dofs)] += element
+        K = np.linalg.inv(K)
+
+        def flow(creep, t):
+            f = np.zeros(cells + 2)
+            f[0] = p * t
+            np.add.at(f, nodes, np.einsum("mil,ml->mi", forces, creep))
+            u = K @ f
+            stress = (np.einsum("mki,mi->mk", B, u[nodes]) - creep) @ C
+            s = stress - stress.mean(axis=1, keepdims=True)
+            mises = np.sqrt(1.5 * np.sum(s**2, axis=1, keepdims=True))
+            return 1.5 * rate * mises ** (n - 1) * s, u
+
+        creep = np.zeros((cells, 3))
+        for t, end in zip(np.arange(steps) / steps, np.arange(1, steps + 1) / steps):
+            first = flow(creep, t)[0]
+            second = flow(creep + first / steps, end)[0]
+            creep += (first + second) / 2 / steps
+        u = flow(creep, 1)[1]
+        result = section(
+            {"Role": "traction", "Pressure": f"{p}*t"},
+            "free",
+            "symmetry",
+            "symmetry",
+            **{
+                "Geometry/Generator": "quarter_hyper_shell",
+                "Geometry/Arguments": "0, 0 : 1 : 2 : 4 : true",
+                "Geometry/Global refinements": 3,
+                "Material/Law": "norton",
+                "Material/norton/Rate factor": rate,
+                "Material/norton/Exponent": n,
+                "Material/norton/Stress cap": 10,
+                "Time/Scheme": "Heun",
+                "Time/Phases": f"1: {steps}",
+                "Output/Points": "1, 0",
+            },
+        )
+        # measured: 7e-4 and 3e-3, a quarter of that on a finer mesh
+        self.assertClose(result["axial_strain"][-1], u[-1], relative=1e-3)
+        self.assertClose(result["point0_x"][-1], u[0], relative=4e-3)
+        self.assertLess(abs(result["axial_force"]).max(), 1e-13)
+
+
 class Block(TestCase):
     """Creep on a plane with friction."""
 
     def block(self, ranks=1, **more):
-        return section("symmetry", "free", "free", "free", ranks=ranks, **{**BLOCK, **more})
+        roles = "symmetry", "free", "free", "free"
+        return section(*roles, ranks=ranks, **{**BLOCK, **more})
 
     def assertSame(self, result, other, tolerance):
         for name in (
@@ -204,6 +266,8 @@ class Block(TestCase):
             "friction_dissipation",
             "external_work",
         ):
+            if name not in other.statistics:
+                continue
             self.assertClose(
                 result[name],
                 other[name],
@@ -224,6 +288,37 @@ class Block(TestCase):
                     other = self.block(ranks, **{"Solver/Linear solver": solver})
                     self.assertSame(other, direct, 1e-9)
 
+    def test_multigrid_on_ranks(self):
+        """Elastic on a regular mesh, whose equal rows multigrid stores once."""
+        regular = {
+            "Material/Law": "elastic",
+            "Time/Scheme": "forward Euler",
+            "Geometry/Boundary refinements": "",
+            "Geometry/Global refinements": 3,
+        }
+        direct = self.block(**regular)
+        for ranks in 1, 2, 3:
+            regular["Solver/Linear solver"] = "multigrid"
+            other = self.block(ranks, **regular)
+            self.assertSame(other, direct, 1e-9)
+
+    def test_new_meshes(self):
+        """On meshes that change the strain is that of a mesh that does not."""
+        adaptive = self.block(
+            **{
+                "Loads/Axial force": "0.02*t",
+                "Geometry/Global refinements": 1,
+                "Mesh refinement/Strategy": "residual",
+                "Mesh refinement/Every n steps": 1,
+            }
+        )
+        self.assertGreater(adaptive["cells"][-1], adaptive["cells"][0])
+        stored = adaptive["stored_energy"][-1]
+        # measured: 2e-5, and 4e-4 of the strain
+        self.assertLess(abs(adaptive["adaptation_energy"][-1]), 1e-4 * stored)
+        strain = self.block(**{"Loads/Axial force": "0.02*t"})["axial_strain"]
+        self.assertClose(adaptive["axial_strain"], strain, relative=1e-3)
+
     def test_force_of_a_strain(self):
         """The force that belongs to a given strain gives that strain."""
         once = {"Time/Phases": "1: 1"}
@@ -238,8 +333,8 @@ class Block(TestCase):
         ours = self.block(**{"Loads/Axial strain": 0})
         plane = self.block(**{"Geometry/Plane model": "strain"})
         for name in plane.statistics:
-            if name not in EFFORT | DEFECTS and not name.startswith(("wall", "seconds")):
-                self.assertClose(ours[name], plane[name], 1e-9, 1e-13, what=name)
+            if not name.startswith(("wall", "seconds")):
+                self.assertClose(ours[name], plane[name], what=name)
 
     def test_in_space(self):
         """A layer of cells whose ends move apart as given."""
@@ -279,6 +374,7 @@ class Refusals(TestCase):
                 {"Loads/Axial force": 1, "Geometry/Plane model": "strain"},
                 "is that of 'Geometry/Plane model' = generalized strain",
             ),
+            ({"Loads/Axial force": 1}, "is largest in 'Loads/Axial force'"),
         ):
             result = section(*SQUARE, check=False, **entries)
             self.assertNotEqual(result.returncode, 0)

@@ -179,6 +179,17 @@ class Identical(RestartCase):
         for ranks in 1, 2:
             self.check("shrink_fit_2d", overrides, (2,), ranks)
 
+    def test_adaptive_generalized_plane_strain_two_ranks(self):
+        overrides = {
+            "Geometry/Plane model": "generalized strain",
+            "Loads/Axial force": "-40*t/2.592e6",
+            "Geometry/Arguments": "8, 4 : 0, 0 : 6, 3 : true",
+            "Mesh refinement/Strategy": "residual",
+            "Time/Scheme": "backward Euler",
+            "Time/Phases": "2.592e6: 4",
+        }
+        self.check("salt_pillar_2d", overrides, (2,), ranks=2)
+
     def test_moving_foundation(self):
         self.check("conveyor_2d", {"Time/Phases": "1: 5, 2: 5"}, (3, 7))
 

@@ -19,6 +19,8 @@ namespace Viscoplastic
     /// boundaries that it is on; none inside of the body.
     Point<dim>                   position;
     std::set<types::boundary_id> boundaries;
+    /// Whether it is rather the force across the section.
+    bool is_axial = false;
   };
 
   /**

@@ -49,12 +49,9 @@ namespace Viscoplastic
 
 
 
-    /// The solution by factors of the dense matrix, where iterations drown in
-    /// rounding. @p x: a start in the truncated space, and the result.
+    /// x := the solution for x by factors, where iterations drown in rounding.
     void
-    solve_densely(const TruncatedFace  &system,
-                  const Vector<double> &right_side,
-                  Vector<double>       &x)
+    solve_densely(const TruncatedFace &system, Vector<double> &x)
     {
       const unsigned int       n = x.size();
       LAPACKFullMatrix<double> matrix(n);
@@ -72,7 +69,6 @@ namespace Viscoplastic
               column[i] + stiffness * ((i == j ? 1. : 0.) - unit[i]);
         }
       matrix.compute_lu_factorization();
-      x = right_side;
       matrix.solve(x);
       system.truncation.project(system.face, x);
     }
@@ -305,7 +301,7 @@ namespace Viscoplastic
         // Rounding stopped it; the line search and the error bound judge what
         // comes out.
         if (is_small)
-          solve_densely(system, product, w);
+          solve_densely(system, w = product);
       }
     truncation.tilt_motions(face, w);
     return 0;

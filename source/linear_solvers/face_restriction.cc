@@ -62,19 +62,9 @@ namespace Viscoplastic
   {
     if (truncation.projector.empty())
       return;
-    for (unsigned int n = 0; n < contact_layout.n_nodes(); ++n)
-      {
-        const unsigned int *const position =
-          &owned_positions[contact_layout.first_dof[n]];
-        const unsigned int n_dofs = contact_layout.n_node_dofs(n);
-        Tensor<1, 3>       values;
-        for (unsigned int i = 0; i < n_dofs; ++i)
-          values[i] = v.begin()[position[i]];
-        // Twice, as FaceTruncation::project().
-        values = truncation.projector[n] * (truncation.projector[n] * values);
-        for (unsigned int i = 0; i < n_dofs; ++i)
-          v.begin()[position[i]] = values[i];
-      }
+    Vector<double> on_face = gather(v);
+    truncation.project(contact_layout, on_face);
+    set(on_face, v);
   }
 
 

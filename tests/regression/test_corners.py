@@ -370,41 +370,63 @@ class Corners(TestCase):
             ):
                 self.assertClose(result[name], alone[name], 1e-6, what=name)
 
+    PLATE = {
+        "Dimension": 3,
+        "Geometry/Arguments": "2, 3, 2 : -1, -1, 0 : 0, 1, 1e-4 : true",
+        "Material/Young's modulus": 0.3288,
+        "Boundary 0/Role": "displacement",
+        "Boundary 0/Displacement":
+            "0.002925*10^(2*sin(y))*0.5*(1-cos(4*pi*t)); free; "
+            "-0.03889*10^(2*sin(x))*(1-exp(-5*t))",
+        "Boundary 5/Role": "contact",
+        "Boundary 5/Contact law": "unilateral",
+        "Boundary 5/Friction law": "coulomb",
+        "Boundary 5/Friction coefficient": 0.5,
+        "Boundary 1/Role": "contact",
+        "Boundary 1/Contact law": "unilateral",
+        "Boundary 1/Friction law": "coulomb",
+        "Boundary 1/Friction coefficient": 1,
+        "Boundary 1/Gap": "if(y < 0.5, 0, 0.001495)",
+        "Boundary 1/Foundation motion": "0; -0.01342*sin(2*pi*t); 0",
+        **{f"Boundary {id}/Role": "free" for id in (2, 3, 4)},
+        "Time/Phases": "0.08333333333333333: 1",
+        "Error control/Error bar": "false",
+        "Output/Fields every": 0,
+    }
+
     def test_flat_plate_between_foundations(self):
         """A plate ten thousand times as long as thick, whose edge lies on two
         foundations with mu = 1: Newton's method jams, and what solves with
         given bounds find is taken. Rounding leaves 3e-9 of pressures, which no
         tolerance changes."""
-        plate = {
-            "Dimension": 3,
-            "Geometry/Arguments": "2, 3, 2 : -1, -1, 0 : 0, 1, 1e-4 : true",
-            "Material/Young's modulus": 0.3288,
-            "Boundary 0/Role": "displacement",
-            "Boundary 0/Displacement":
-                "0.002925*10^(2*sin(y))*0.5*(1-cos(4*pi*t)); free; "
-                "-0.03889*10^(2*sin(x))*(1-exp(-5*t))",
-            "Boundary 5/Role": "contact",
-            "Boundary 5/Contact law": "unilateral",
-            "Boundary 5/Friction law": "coulomb",
-            "Boundary 5/Friction coefficient": 0.5,
-            "Boundary 1/Role": "contact",
-            "Boundary 1/Contact law": "unilateral",
-            "Boundary 1/Friction law": "coulomb",
-            "Boundary 1/Friction coefficient": 1,
-            "Boundary 1/Gap": "if(y < 0.5, 0, 0.001495)",
-            "Boundary 1/Foundation motion": "0; -0.01342*sin(2*pi*t); 0",
-            **{f"Boundary {id}/Role": "free" for id in (2, 3, 4)},
-            "Time/Phases": "0.08333333333333333: 1",
-            "Error control/Error bar": "false",
-            "Output/Fields every": 0,
-        }
-        law = run("plate", plate, text="")
+        law = run("plate", self.PLATE, text="")
         self.check_identities(law, tolerance=1e-7)
         tight = {"Solver/Coulomb pressure": "fixed point", "Solver/Coulomb tolerance": 1e-10}
-        bounds = run("plate", {**plate, **tight}, text="")
+        bounds = run("plate", {**self.PLATE, **tight}, text="")
         for name in "strain_energy", "contact_force_x", "contact_force_z":
             self.assertClose(law[name][-1], bounds[name][-1], relative=1e-5, what=name)
         self.assertGreater(law["contact_force_x"][-1] ** 2, 0)
+
+    def test_plates_as_flat_as_they_may_be(self):
+        """A million times as long as thick: iterations on the face drown in
+        rounding, factors take their place, and forces are as much smaller as
+        the plate is thinner. (Without factors a step takes minutes or fails.)"""
+        forces = []
+        for thickness in 1e-5, 1e-6:
+            plate = run(
+                "plate",
+                {
+                    **self.PLATE,
+                    "Geometry/Arguments": f"2, 3, 2 : -1, -1, 0 : 0, 1, {thickness}"
+                    " : true",
+                    "Geometry/Global refinements": 1,
+                    "Solver/Coulomb pressure": "lagged",
+                },
+                text="",
+            )
+            self.assertLess(plate["contact_iterations"].max(), 100)
+            forces.append(plate["contact_force_x"][-1] / thickness)
+        self.assertClose(forces[1], forces[0], relative=1e-3)
 
 
 if __name__ == "__main__":

@@ -227,7 +227,8 @@ class Estimate(TestCase):
             self.assertGreater(counts.sum(), 5)
             self.assertGreater(ratio[counts].min(), 0.5, scheme)
             self.assertLess(ratio[counts].max(), 2.5, scheme)
-            self.assertLess(estimate[-1], 0.05 * estimate.max(), scheme)
+            held = np.argmin(abs(t - 1.75))
+            self.assertLess(estimate[held], 0.05 * estimate.max(), scheme)
 
 
 class Scenes(TestCase):
@@ -283,10 +284,14 @@ class Scenes(TestCase):
 
     def test_restart_on_changing_meshes_and_ranks(self):
         """Bit by bit, of each scheme; and ranks agree."""
-        for scheme in "Heun", "backward Euler":
+        for scheme, law in (
+            ("Heun", material("burgers", BURGERS)),
+            ("backward Euler", material("lubby2", LUBBY2)),
+        ):
             more = {
                 **self.ADAPTIVE,
-                **material("lubby2", LUBBY2),
+                **law,
+                "Mesh refinement/Cell budget": 150,
                 "Time/Scheme": scheme,
             }
             with Job("pad_adaptive", more) as whole:

@@ -312,9 +312,7 @@ class Kept(TestCase):
                 # Where signs cancel, what is left is as inexact as its parts.
                 bars = one["quantity_total"]
                 difference = several["quantity_total"] - bars
-                # Creep times of a linear law are rounded to half powers of two: of two
-                # that differ a little one may be 1.4 times the other (measured: 1.3 %).
-                self.assertLess(np.abs(difference).max(), 2e-2 * bars.max())
+                self.assertLess(np.abs(difference).max(), 1e-2 * bars.max())
 
     def test_survives_restart(self):
         for column in "reaction_3_x", "friction_dissipation":

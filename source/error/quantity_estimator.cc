@@ -356,7 +356,8 @@ namespace Viscoplastic
     // Of refined cells it would be a product of errors that is not known.
     if (!d.scene().keeps_history_at_points())
       estimate.history = errors.history * estimate.dual_error;
-    else if (!d.mean_dilatation && tangent && errors.energy_norm > 0.)
+    else if (!d.mean_dilatation && tangent && !is_sum &&
+             errors.energy_norm > 0.)
       // A body that locks is too stiff as a whole, and so is its dual one.
       estimate.history =
         errors.history / errors.energy_norm * std::abs(estimate.value);

@@ -268,7 +268,7 @@ namespace Viscoplastic
                 (slope - old_slope);
       return step;
     };
-    std::vector<double>                  sums(5, 0.);
+    std::vector<double>                  sums(6, 0.);
     std::vector<SymmetricTensor<2, 3>>   strains(stress_space.n_samples);
     std::optional<SymmetricTensor<4, 3>> fading;
     SymmetricTensor<4, 3>                relaxation;
@@ -404,6 +404,8 @@ namespace Viscoplastic
                 sums[2] += weight * stiffness.complementary_square(state.z[i]);
                 sums[3] += weight * stiffness.complementary_square(
                                       state.z[i] - accepted.z[i]);
+                sums[5] +=
+                  weight * stiffness.complementary_square(end.rate->rate[i]);
               }
           }
       }
@@ -412,6 +414,9 @@ namespace Viscoplastic
     estimate.time                = std::sqrt(sums[1]);
     estimate.irreversible_norm   = std::sqrt(sums[2]);
     estimate.irreversible_change = std::sqrt(sums[3]);
+    estimate.creep_path = old.errors.creep_path + k * std::sqrt(sums[5]);
+    estimate.creep_time =
+      estimate.creep_path > 0. ? estimate.creep_path / std::sqrt(sums[5]) : 0.;
     estimate.remembered_indicator =
       relaxes ? std::sqrt(sums[4]) : estimate.time_indicator;
   }
@@ -459,7 +464,6 @@ namespace Viscoplastic
                    accepted,
                    *accepted_rate,
                    end);
-        estimate.creep_path += estimate.irreversible_change;
       }
     estimate.swing       = std::hypot(before.swing, swing.energy_norm);
     estimate.swing_share = std::hypot(before.swing_share, swing.share);

@@ -66,11 +66,7 @@ namespace Viscoplastic
   bool
   QuantityEstimator<dim>::is_of_creep(const Scene<dim> &scene)
   {
-    using Kind = QuantityOfInterest::Kind;
-    return scene.has_viscosity() && scene.quantity &&
-           (scene.quantity->kind == Kind::displacement ||
-            scene.quantity->kind == Kind::axial_strain ||
-            scene.quantity->is_reaction());
+    return scene.has_viscosity() && scene.quantity;
   }
 
 
@@ -79,13 +75,15 @@ namespace Viscoplastic
   Vector<double>
   QuantityEstimator<dim>::products_of_creep(const State<dim> &state,
                                             const double      relaxation_rate,
+                                            const double      creep_time,
                                             const CoulombLaw *law) const
   {
     // After a thousand relaxation times the body is as good as incompressible.
     // To half a power of two, so that linear laws have few matrices.
-    const double k = std::exp2(
-      0.5 *
-      std::floor(2. * std::log2(std::min(state.t, 1e3 / relaxation_rate))));
+    const double longest = 1e3 / relaxation_rate,
+                 time    = std::min(creep_time, std::max(state.t, longest)),
+                 k       = std::exp2(
+                   0.5 * std::floor(2. * std::log2(std::min(time, longest))));
     const auto now    = discretization.laws.at(state.t, state.history);
     const bool is_new = tangent->linearize(state.u, state.z, now, k);
     const DualSolution<dim> dual =
@@ -94,7 +92,7 @@ namespace Viscoplastic
                          state.contact,
                          law);
     typename RecoveryEstimator<dim>::Linearization linearization{
-      tangent->at_samples(), k / state.t, {}};
+      tangent->at_samples(), k / time, {}};
     const StressSpace<dim> &stress_space = discretization.stress_space;
     const unsigned int      n            = stress_space.n_samples;
     std::vector<SymmetricTensor<2, 3>> strains(n);
@@ -157,8 +155,8 @@ namespace Viscoplastic
                                  QuantityEstimate          &estimate) const
   {
     const ContactState &old = accepted.state.contact;
-    // Bounds of what has slipped and of what of it does no more, and the
-    // quadrature.
+    // Bounds of what has slipped, by how much they are less for what goes on
+    // slipping, and the quadrature.
     std::vector<double> sums(3, 0.);
     for (unsigned int p = 0; p < contact.n_points(); ++p)
       {
@@ -167,9 +165,10 @@ namespace Viscoplastic
         if (!old.sticks[p])
           {
             sums[0] += old.bound[p];
-            if (contact.sticks[p] ||
-                contact.multiplier[p] * old.multiplier[p] < 0.)
-              sums[1] += old.bound[p];
+            sums[1] += old.bound[p];
+            if (!contact.sticks[p] &&
+                contact.multiplier[p] * old.multiplier[p] >= 0.)
+              sums[1] -= contact.bound[p];
           }
         if (!contact.sticks[p])
           sums[2] -=
@@ -252,10 +251,10 @@ namespace Viscoplastic
     double mesh = 0., time = 0.;
     if (dual.norm > 0.)
       {
-        const bool   forgets = end.rate && (quantity.is_force() || tangent);
-        const double memory =
-          forgets ? nonlinearity(d.stress_space, state, *end.rate) : 0.;
-        const auto products =
+        const double memory = tangent && end.rate ?
+                                nonlinearity(d.stress_space, state, *end.rate) :
+                                0.;
+        const auto   products =
           space_estimator.multiply(state, end.forces, dual, memory);
         Vector<double>      indicators(products.of_both);
         std::vector<double> sums(3, 0.);
@@ -270,14 +269,22 @@ namespace Viscoplastic
           Utilities::MPI::sum(sums, d.space.communicator, sums);
         };
         add_up();
-        double least = 0.;
-        if (tangent && end.rate && end.rate->relaxation_rate > 0.)
+        // Forces forget what has crept, but nothing is known of the signs then.
+        estimate.space_of_creep = 0.;
+        if (quantity.is_force() && errors.energy_norm > 0.)
+          estimate.space_of_creep =
+            std::min(1., errors.creep_path / errors.energy_norm) * sums[2];
+        if (tangent && end.rate &&
+            end.rate->relaxation_rate * errors.creep_time > elastic)
           {
             const double of_residuals = sums[0];
-            indicators =
-              products_of_creep(state, end.rate->relaxation_rate, linearized);
+            indicators                = products_of_creep(state,
+                                           end.rate->relaxation_rate,
+                                           errors.creep_time,
+                                           linearized);
             add_up();
-            least = least_share * sums[2];
+            estimate.space_of_creep =
+              std::max(estimate.space_of_creep, least_share * sums[2]);
             if (std::abs(of_residuals) > std::abs(sums[0]))
               {
                 indicators = products.of_both;
@@ -286,14 +293,9 @@ namespace Viscoplastic
           }
         for (double &indicator : indicators)
           indicator = safety * std::abs(indicator);
-        mesh                = dual_problem.sign() * sums[0];
-        estimate.dual_norm  = dual.norm;
-        estimate.dual_error = std::sqrt(sums[1]);
-        // Forces forget what has crept, but nothing is known of the signs then.
-        estimate.space_of_creep = least;
-        if (quantity.is_force() && !tangent && errors.energy_norm > 0.)
-          estimate.space_of_creep =
-            std::min(1., errors.creep_path / errors.energy_norm) * sums[2];
+        mesh                    = dual_problem.sign() * sums[0];
+        estimate.dual_norm      = dual.norm;
+        estimate.dual_error     = std::sqrt(sums[1]);
         estimate.unsigned_space = sums[2];
         if (d.scene().has_viscosity()) // collective
           {
@@ -355,7 +357,8 @@ namespace Viscoplastic
     // Of refined cells it would be a product of errors that is not known.
     if (!d.scene().keeps_history_at_points())
       estimate.history = errors.history * estimate.dual_error;
-    else if (!d.mean_dilatation && tangent && errors.energy_norm > 0.)
+    else if (!d.mean_dilatation && tangent && !is_sum &&
+             errors.energy_norm > 0.)
       // A body that locks is too stiff as a whole, and so is its dual one.
       estimate.history =
         errors.history / errors.energy_norm * std::abs(estimate.value);

@@ -194,7 +194,7 @@ namespace Viscoplastic
               "varies within cells.";
     else if (!scene.is_adaptive())
       text << "the mesh is fixed by 'Mesh refinement/Strategy'.";
-    else if (budget->unavoidable > 0.)
+    else if (budget->unavoidable > 0. && scene.has_viscosity())
       text << "finer meshes do not lower what earlier ones have left in the "
               "history: begin with more 'Geometry/Global refinements', or with "
               "'Material/Stress history' = quadrature points.";
@@ -205,9 +205,12 @@ namespace Viscoplastic
     else if (n_cells > 0.8 * refinement.cell_budget)
       text << "it takes more cells than 'Mesh refinement/Cell budget' = "
            << refinement.cell_budget << '.';
-    else
+    else if (discretization->space.dof_handler.get_triangulation()
+               .n_global_levels() > refinement.maximal_level)
       text << "it takes cells beyond 'Mesh refinement/Maximal level' = "
            << refinement.maximal_level << '.';
+    else
+      text << "finer meshes do not lower it.";
     return text.str();
   }
 

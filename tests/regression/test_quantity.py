@@ -207,7 +207,8 @@ class Kept(TestCase):
         estimate = result["quantity_total"].max() / np.abs(result[column]).max()
         self.assertLess(estimate, tolerance)
         self.assertLess(error, tolerance, column)
-        self.assertGreater(error, tolerance / 5, column)
+        # measured: from 0.19 of it (the work of friction in creep, on 299 cells)
+        self.assertGreater(error, tolerance / 6, column)
         self.assertIn(f"Estimated error of {column}", result.stdout)
         self.assertIn("has been kept", result.stdout)
         return result
@@ -495,6 +496,77 @@ class PointInCreep(TestCase):
             error = known - result["point0_x"][-1]
             # measured: 1.08, 1.05; without 0.23, 0.19
             self.assertClose(result["quantity_correction"][-1], error, 0.15)
+
+
+class EachKind(TestCase):
+    """A block between a rough foundation and a rigid head, of 8 x 8 cells against
+    32 x 32 with the same steps, at 1, 10 and 1000 relaxation times."""
+
+    BLOCK = {
+        "Geometry/Arguments": "8, 8 : 0, 0 : 1, 1 : true",
+        "Material/Young's modulus": 100,
+        "Material/Law": "norton",
+        "Material/norton/Rate factor": 0.01,
+        "Material/norton/Exponent": 3,
+        "Material/norton/Stress cap": 100,
+        "Boundary 0/Role": "symmetry",
+        "Boundary 1/Role": "free",
+        "Boundary 2/Role": "contact",
+        "Boundary 2/Contact law": "unilateral",
+        "Boundary 2/Friction law": "coulomb",
+        "Boundary 2/Friction coefficient": 0.3,
+        "Boundary 3/Role": "displacement",
+        "Boundary 3/Displacement": "0; -0.01*t",
+        "Time/Scheme": "backward Euler",
+        "Time/Phases": "1: 8, 10: 6, 1000: 12",
+        "Output/Fields every": 0,
+        "Output/Points": "1, 0",
+    }
+    ENDS = (8, 14, 26)
+
+    @staticmethod
+    @functools.lru_cache
+    def fine(**more):
+        refined = {**EachKind.BLOCK, **more, "Geometry/Global refinements": 2}
+        return run("block", refined, text="")
+
+    def check(self, column, least, largest, **more):
+        with self.subTest(column):
+            result = run("block", {**self.BLOCK, **more, **of(column)}, text="")
+            error = np.abs(self.fine(**more)[column] - result[column])
+            quotients = (result["quantity_space"] / error)[[*self.ENDS]]
+            self.assertGreater(quotients.min(), least)
+            self.assertLess(quotients.max(), largest)
+
+    def test_in_creep(self):
+        # measured: 1.3 to 1.6, 2.9 to 4.4, 0.57 to 1, 1.3 to 2.3; by residuals alone
+        # the work of friction, 1.4 to 1.8, had 0.013 at the end
+        self.check("contact_force_y", 0.7, 3)
+        self.check("friction_force_x", 0.7, 5)
+        self.check("reaction_0_x", 0.5, 3)
+        self.check("point0_x", 0.7, 3)
+        self.check("friction_dissipation", 0.7, 3)
+
+    def test_without_friction(self):
+        """The dual solution of the elastic body is linear and has no error, but the
+        law is not linear."""
+        sides = {
+            "Boundary 1/Role": "traction",
+            "Boundary 1/Pressure": "min(20*t, 1)*sin(3*y)",
+            "Boundary 2/Friction law": "none",
+            "Boundary 3/Displacement": "free; -0.01*t",
+        }
+        # measured: 2 to 2.3; by residuals 1e-14
+        self.check("contact_force_y", 0.7, 3, **sides)
+
+    def test_of_stress_that_relaxes(self):
+        """At constant strain forces forget what the mesh has made wrong of them, but
+        work that has been done stays as it is, under bounds that fall, too."""
+        held = {"Boundary 3/Displacement": "0; -0.01*min(20*t, 1)"}
+        # measured: 0.69 to 1.3; as if creep had been steady 190 at the end;
+        # 1.8; with the bounds of the step alone 0.007
+        self.check("reaction_3_y", 0.6, 3, **held)
+        self.check("friction_dissipation", 0.7, 3, **held)
 
 
 class Refused(TestCase):

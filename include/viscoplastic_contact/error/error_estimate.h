@@ -75,8 +75,7 @@ namespace Viscoplastic
     /// The sum of what the cells contribute to the error of the mesh, without
     /// signs.
     double unsigned_space = 0.;
-    /// What creep has made of the error of the mesh, without signs; not of a
-    /// sum over the steps.
+    /// What creep has made of the error of the mesh, without signs.
     double space_of_creep = 0.;
     /// Of slip that turns and that comes to rest within steps, summed.
     double turning = 0., resting = 0.;
@@ -124,8 +123,9 @@ namespace Viscoplastic
     /// (int E^-1 z : z)^{1/2} and the same of the change of z in the step; with
     /// step control or a tolerance only.
     double irreversible_norm = 0., irreversible_change = 0.;
-    /// The sum of these changes up to now.
-    double creep_path = 0.;
+    /// The sum of k |G| of all steps, in the same norm; and the time in which
+    /// the last |G| alone makes that.
+    double creep_path = 0., creep_time = 0.;
 
     /// Write to, or read from, an archive; but for what is of step control
     /// alone, which each step makes anew.

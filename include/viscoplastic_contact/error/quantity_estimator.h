@@ -25,12 +25,20 @@ namespace Viscoplastic
    *   sum is the estimate, safety times that is what counts as error, and their
    *   sizes are the indicators by which meshes are refined.
    * - mesh, in what has crept: rates that have been wrong for long have moved
-   *   the body, which the residual of its present stress does not know. For
-   *   displacements and reactions the larger of a(e_u, e_w) and of the product
-   *   C e_u : e_w of recovered strains counts (RecoveryEstimator::multiply()),
-   *   with the tangents C of one step of backward Euler from the beginning to
-   *   now and the dual solution w of their matrix. Other forces forget strain
-   *   that has relaxed.
+   *   the body, which the residual of its present stress does not know. What
+   *   has crept is T G with the present G and its path T |G|
+   *   (ErrorEstimate::creep_time): one step T of backward Euler, whose stress
+   *   S(eps(u)) has the tangents C. A force is the work of its stress on any
+   *   displacement that is 1 where it acts and 0 where others do, also on the
+   *   solution w_h of the dual problem of C, so that
+   *
+   *       |J(u) - J(u_h)| = |int (S(eps(u)) - S(eps(u_h))) : eps(w_h)|
+   *                       = |int (e_u : C e_w - r(e_u) : C eps(w_h))|
+   *
+   *   with the remainder r of RecoveryEstimator::multiply(); points likewise.
+   *   The larger of this and of a(e_u, e_w) counts. T is t under steady loads,
+   *   less while they grow, and has no bound where stress relaxes: C and what
+   *   forces remember fade as it does.
    * - time steps: R_z(w) = -(D, eps(w)) with the sum D of the defects of all
    *   steps (see ErrorEstimator).
    * - slip that turns or comes to rest within a step is wrong by defects d_c
@@ -45,7 +53,8 @@ namespace Viscoplastic
    * The work of friction, int rho |s'|, is sum rho_c |s_c| with s_c the slip
    * since point c has begun to slip: its error is that of J(u) at the end of a
    * step, and what it was, for points that have come to rest since, when they
-   * did. That share of it is settled (settled_space, settled_time). The bounds
+   * did. That share of it is settled (settled_space, settled_time), and so is
+   * -d(rho)/rho of it where bounds change, by parts. The bounds
    * at the ends of steps, in place of those in between, make a quadrature error
    * -1/2 (rho_n - rho_{n-1}) |s| of known sign, settled at once.
    */
@@ -57,7 +66,9 @@ namespace Viscoplastic
     /// knows nothing of what the meshes before have done to z, or of fronts of
     /// slip between nodes. How large that may be: doc/error_bar.md.
     static constexpr double safety = 2.;
-    /// What counts at least of the sum without signs where creep moves a point:
+    /// What has crept for less than this of a relaxation time is elastic.
+    static constexpr double elastic = 0.01;
+    /// What counts at least of the sum without signs where a body creeps:
     /// contributions that cancel more are no more accurate than that.
     static constexpr double least_share = 0.25;
 
@@ -66,8 +77,7 @@ namespace Viscoplastic
     using TangentSolver =
       std::function<BulkSolver &(const TangentMatrix<dim> &, const bool)>;
 
-    /// Whether the quantity is a displacement or a reaction of a body that
-    /// creeps.
+    /// Whether there is a quantity, of a body that creeps.
     static bool
     is_of_creep(const Scene<dim> &scene);
 
@@ -103,10 +113,11 @@ namespace Viscoplastic
                      QuantityEstimate        &estimate) const;
 
     /// What the errors of rates have done to the quantity by the end of a
-    /// step, by active cell. Collective.
+    /// step, by active cell, with ErrorEstimate::creep_time. Collective.
     Vector<double>
     products_of_creep(const State<dim> &state,
                       const double      relaxation_rate,
+                      const double      creep_time,
                       const CoulombLaw *law) const;
 
     /// Settle what later steps will not change in the error of a sum.
@@ -119,7 +130,7 @@ namespace Viscoplastic
     const SpaceEstimator<dim> &space_estimator;
     const TangentSolver        solver_of_tangents;
     const DualProblem<dim>     dual_problem;
-    /// Of creep; null if the quantity is no displacement or reaction.
+    /// Of creep; null if nothing creeps.
     std::unique_ptr<TangentMatrix<dim>> tangent;
   };
 } // namespace Viscoplastic

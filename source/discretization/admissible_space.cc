@@ -2,9 +2,9 @@
 #include <deal.II/base/bounding_box.h>
 #include <deal.II/base/mpi.h>
 #include <deal.II/dofs/dof_tools.h>
-#include <deal.II/lac/trilinos_sparsity_pattern.h>
 
 #include <viscoplastic_contact/discretization/admissible_space.h>
+#include <viscoplastic_contact/discretization/conditions_at_nodes.h>
 #include <viscoplastic_contact/mesh/cell_order.h>
 
 
@@ -231,87 +231,11 @@ namespace Viscoplastic
   void
   AdmissibleSpace<dim>::make_frames()
   {
-    // A node's frame is a function of the boundary ids that meet there, as long
-    // as each id has one normal. Owners know all ids at their nodes, since
-    // every neighbor of an owned cell is at least a ghost; as a bit mask in a
-    // vector the ids travel to the other ranks.
-    std::vector<const BoundaryCondition<dim> *> listed;
-    for (const auto &pair : scene.boundary)
-      if (pair.second.constrains() || pair.second.has_contact_points())
-        listed.push_back(&pair.second);
-    const std::size_t n_boundaries = listed.size();
-    for (const Support<dim> &support : scene.supports)
-      listed.push_back(&support.condition);
-    AssertThrow(listed.size() <= 52,
-                ExcMessage("At most 52 boundary ids and supports may carry "
-                           "displacement or contact conditions."));
-
-    // What holds an absent material does not hold the nodes that it shares with
-    // the body.
-    std::vector<bool> is_of_body(scene.has_stages() ? node_position.size() : 0,
-                                 false);
-    if (scene.has_stages())
-      for (const auto &cell : dof_handler.active_cell_iterators())
-        if (!cell->is_artificial() && scene.is_present(cell->material_id()))
-          for (const unsigned int v : cell->vertex_indices())
-            if (const auto dof = cell->vertex_dof_index(v, 0);
-                owned.is_element(dof))
-              is_of_body[owned.index_within_set(dof) / dim] = true;
-    const auto is_released = [&](const auto &cell, const std::size_t node) {
-      return scene.has_stages() && is_of_body[node] &&
-             !scene.is_present(cell->material_id());
-    };
-
-    // For each owned node the boundaries that it is on.
-    const auto boundaries_of_nodes =
-      [&](const std::vector<types::boundary_id> &ids) {
-        std::vector<std::uint64_t> result(node_position.size(), 0);
-        for (const auto &cell : dof_handler.active_cell_iterators())
-          if (!cell->is_artificial())
-            for (const unsigned int f : cell->face_indices())
-              if (cell->face(f)->at_boundary())
-                for (unsigned int i = 0; i < ids.size(); ++i)
-                  if (ids[i] == cell->face(f)->boundary_id())
-                    for (const unsigned int v : cell->face(f)->vertex_indices())
-                      {
-                        const auto dof = cell->face(f)->vertex_dof_index(v, 0);
-                        if (owned.is_element(dof) &&
-                            !hanging_cartesian.is_constrained(dof) &&
-                            !is_released(cell,
-                                         owned.index_within_set(dof) / dim))
-                          result[owned.index_within_set(dof) / dim] |=
-                            std::uint64_t(1) << i;
-                      }
-        return result;
-      };
-    std::vector<types::boundary_id> ids;
-    for (unsigned int i = 0; i < n_boundaries; ++i)
-      ids.push_back(listed[i]->id);
-    std::vector<std::uint64_t> mask = boundaries_of_nodes(ids);
-    // Where nothing lies opposite, there is no contact.
-    for (unsigned int i = 0; i < n_boundaries; ++i)
-      if (listed[i]->against)
-        for (std::size_t n = 0; n < mask.size(); ++n)
-          if (mortar_rows.at(ids[i]).count(owned.nth_index_in_set(n * dim) /
-                                           dim) == 0)
-            mask[n] &= ~(std::uint64_t(1) << i);
-    for (unsigned int s = 0; s < scene.supports.size(); ++s)
-      {
-        const Support<dim> &support = scene.supports[s];
-        const std::uint64_t bit     = std::uint64_t(1) << (n_boundaries + s),
-                            all =
-                              (std::uint64_t(1) << support.boundaries.size()) -
-                              1;
-        std::vector<std::uint64_t> here;
-        if (!support.position)
-          here = boundaries_of_nodes(
-            {support.boundaries.begin(), support.boundaries.end()});
-        // Vertices of the coarse mesh are the same numbers on all meshes.
-        for (std::size_t n = 0; n < mask.size(); ++n)
-          if (support.position ? node_position[n] == *support.position :
-                                 here[n] == all)
-            mask[n] |= bit;
-      }
+    // A node's frame is a function of the conditions that meet there, as long
+    // as each has one normal. As a bit mask in a vector they travel to the
+    // other ranks.
+    const auto [listed, mask] = conditions_at_nodes(
+      dof_handler, scene, hanging_cartesian, mortar_rows, node_position);
 
     DistributedVector masks = owned_vector(), ghosted_masks = ghosted_vector();
     for (std::size_t n = 0; n < mask.size(); ++n)
@@ -322,7 +246,7 @@ namespace Viscoplastic
     std::map<std::uint64_t, unsigned int> frame_of_mask{{0, 0}};
     frame_of_node.assign(relevant.n_elements() / dim, 0);
     std::uint64_t curved = 0;
-    for (unsigned int i = 0; i < n_boundaries; ++i)
+    for (unsigned int i = 0; i < listed.size(); ++i)
       if (listed[i]->normal_varies)
         curved |= std::uint64_t(1) << i;
     for (std::size_t n = 0; n < frame_of_node.size(); ++n)
@@ -550,129 +474,6 @@ namespace Viscoplastic
         }
     for (const std::size_t i : hanging_entries)
       in_frames.begin()[i] = 0.;
-  }
-
-
-
-  template <int dim>
-  void
-  AdmissibleSpace<dim>::make_sparsity_pattern(
-    TrilinosWrappers::SparsityPattern &pattern) const
-  {
-    pattern.reinit(owned, owned, relevant, communicator);
-    DoFTools::make_sparsity_pattern(dof_handler,
-                                    pattern,
-                                    hanging_in_frames,
-                                    /* keep_constrained_dofs = */ false,
-                                    Utilities::MPI::this_mpi_process(
-                                      communicator));
-    if (axial)
-      {
-        const auto                           n = dof_handler.n_dofs();
-        std::vector<types::global_dof_index> others;
-        for (const auto dof : relevant)
-          if (dof < n && !hanging_in_frames.is_constrained(dof))
-            {
-              pattern.add(dof, n);
-              others.push_back(dof);
-            }
-        pattern.add_entries(n, others.begin(), others.end());
-        for (unsigned int d = 0; d < dim; ++d)
-          pattern.add(n + d, n + d);
-      }
-    if (!couplings.empty())
-      {
-        std::vector<types::global_dof_index> dofs(
-          dof_handler.get_fe().n_dofs_per_cell());
-        FullMatrix<double> none;
-        for (const auto &cell : cells)
-          {
-            dofs.resize(dof_handler.get_fe().n_dofs_per_cell());
-            cell->get_dof_indices(dofs);
-            if (!is_coupled(dofs))
-              continue;
-            couple(dofs, none);
-            hanging_in_frames.add_entries_local_to_global(dofs, pattern, false);
-          }
-      }
-    pattern.compress();
-  }
-
-
-
-  template <int dim>
-  void
-  AdmissibleSpace<dim>::get_dofs(
-    const typename DoFHandler<dim>::active_cell_iterator &cell,
-    std::vector<types::global_dof_index>                 &dofs) const
-  {
-    dofs.resize(dof_handler.get_fe().n_dofs_per_cell());
-    cell->get_dof_indices(dofs);
-    for (unsigned int d = 0; axial && d < dim; ++d)
-      dofs.push_back(dof_handler.n_dofs() + d);
-  }
-
-
-
-  template <int dim>
-  void
-  AdmissibleSpace<dim>::add_cell_matrix(
-    const std::vector<types::global_dof_index> &dofs,
-    FullMatrix<double>                         &cell_matrix,
-    DistributedMatrix                          &matrix) const
-  {
-    if (!is_coupled(dofs))
-      {
-        rotate(dofs, cell_matrix);
-        hanging_in_frames.distribute_local_to_global(cell_matrix, dofs, matrix);
-        return;
-      }
-    std::vector<types::global_dof_index> all(dofs);
-    FullMatrix<double>                   coupled(cell_matrix);
-    couple(all, coupled);
-    rotate(all, coupled);
-    hanging_in_frames.distribute_local_to_global(coupled, all, matrix);
-  }
-
-
-
-  template <int dim>
-  void
-  AdmissibleSpace<dim>::rotate(const std::vector<types::global_dof_index> &dofs,
-                               FullMatrix<double> &cell_matrix) const
-  {
-    if (rotated_nodes.empty())
-      return;
-    const unsigned int n = dofs.size();
-    // Cell degrees of freedom come node by node for FE_Q(1).
-    for (unsigned int a = 0; a < n; a += dim)
-      {
-        if (hanging_cartesian.is_constrained(dofs[a]))
-          continue;
-        const NodalFrame<dim> &frame =
-          frames[frame_of_node[relevant.index_within_set(dofs[a]) / dim]];
-        if (frame.is_cartesian)
-          continue;
-        const Tensor<2, dim> &R = frame.directions;
-        for (unsigned int j = 0; j < n; ++j)
-          {
-            Tensor<1, dim> block;
-            for (unsigned int d = 0; d < dim; ++d)
-              block[d] = cell_matrix(a + d, j);
-            block = transpose(R) * block;
-            for (unsigned int d = 0; d < dim; ++d)
-              cell_matrix(a + d, j) = block[d];
-          }
-        for (unsigned int i = 0; i < n; ++i)
-          {
-            Tensor<1, dim> block;
-            for (unsigned int d = 0; d < dim; ++d)
-              block[d] = cell_matrix(i, a + d);
-            block = block * R;
-            for (unsigned int d = 0; d < dim; ++d)
-              cell_matrix(i, a + d) = block[d];
-          }
-      }
   }
 
 

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <deal.II/dofs/dof_handler.h>
+#include <deal.II/lac/affine_constraints.h>
+
+#include <viscoplastic_contact/discretization/mortar_interpolation.h>
+#include <viscoplastic_contact/scene/scene.h>
+
+#include <cstdint>
+#include <map>
+#include <vector>
+
+namespace Viscoplastic
+{
+  using namespace dealii;
+
+  /// The conditions of displacement and contact, those of supports last, and
+  /// for each owned node the bits of those that it carries.
+  template <int dim>
+  struct ConditionsAtNodes
+  {
+    std::vector<const BoundaryCondition<dim> *> conditions;
+    std::vector<std::uint64_t>                  mask;
+  };
+
+  /**
+   * Which conditions the nodes of a mesh carry: those of the boundary faces
+   * that they are on, but not of absent materials beside the body, of contact
+   * with another body where nothing lies opposite, or at hanging nodes.
+   * @p node_position: of each owned node. Owners know all ids at their nodes,
+   * since every neighbor of an owned cell is at least a ghost. Throws
+   * ExcMessage where there are more than 52 conditions.
+   */
+  template <int dim>
+  ConditionsAtNodes<dim>
+  conditions_at_nodes(
+    const DoFHandler<dim>                          &dof_handler,
+    const Scene<dim>                               &scene,
+    const AffineConstraints<double>                &hanging_nodes,
+    const std::map<types::boundary_id, MortarRows> &mortar_rows,
+    const std::vector<Point<dim>>                  &node_position);
+} // namespace Viscoplastic

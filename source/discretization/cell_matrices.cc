@@ -1,0 +1,159 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <deal.II/base/mpi.h>
+#include <deal.II/dofs/dof_tools.h>
+#include <deal.II/lac/trilinos_sparsity_pattern.h>
+
+#include <viscoplastic_contact/discretization/admissible_space.h>
+
+// The part of AdmissibleSpace that assembles matrices in frames.
+
+namespace Viscoplastic
+{
+  template <int dim>
+  void
+  AdmissibleSpace<dim>::make_sparsity_pattern(
+    TrilinosWrappers::SparsityPattern &pattern) const
+  {
+    pattern.reinit(owned, owned, relevant, communicator);
+    DoFTools::make_sparsity_pattern(dof_handler,
+                                    pattern,
+                                    hanging_in_frames,
+                                    /* keep_constrained_dofs = */ false,
+                                    Utilities::MPI::this_mpi_process(
+                                      communicator));
+    if (axial)
+      {
+        const auto                           n = dof_handler.n_dofs();
+        std::vector<types::global_dof_index> others;
+        for (const auto dof : relevant)
+          if (dof < n && !hanging_in_frames.is_constrained(dof))
+            {
+              pattern.add(dof, n);
+              others.push_back(dof);
+            }
+        pattern.add_entries(n, others.begin(), others.end());
+        for (unsigned int d = 0; d < dim; ++d)
+          pattern.add(n + d, n + d);
+      }
+    if (!couplings.empty())
+      {
+        std::vector<types::global_dof_index> dofs(
+          dof_handler.get_fe().n_dofs_per_cell());
+        FullMatrix<double> none;
+        for (const auto &cell : cells)
+          {
+            dofs.resize(dof_handler.get_fe().n_dofs_per_cell());
+            cell->get_dof_indices(dofs);
+            if (!is_coupled(dofs))
+              continue;
+            couple(dofs, none);
+            hanging_in_frames.add_entries_local_to_global(dofs, pattern, false);
+          }
+      }
+    pattern.compress();
+  }
+
+
+
+  template <int dim>
+  void
+  AdmissibleSpace<dim>::get_dofs(
+    const typename DoFHandler<dim>::active_cell_iterator &cell,
+    std::vector<types::global_dof_index>                 &dofs) const
+  {
+    dofs.resize(dof_handler.get_fe().n_dofs_per_cell());
+    cell->get_dof_indices(dofs);
+    for (unsigned int d = 0; axial && d < dim; ++d)
+      dofs.push_back(dof_handler.n_dofs() + d);
+  }
+
+
+
+  template <int dim>
+  void
+  AdmissibleSpace<dim>::add_cell_matrix(
+    const std::vector<types::global_dof_index> &dofs,
+    FullMatrix<double>                         &cell_matrix,
+    DistributedMatrix                          &matrix) const
+  {
+    if (!is_coupled(dofs))
+      {
+        rotate(dofs, cell_matrix);
+        hanging_in_frames.distribute_local_to_global(cell_matrix, dofs, matrix);
+        return;
+      }
+    std::vector<types::global_dof_index> all(dofs);
+    FullMatrix<double>                   coupled(cell_matrix);
+    couple(all, coupled);
+    rotate(all, coupled);
+    hanging_in_frames.distribute_local_to_global(coupled, all, matrix);
+  }
+
+
+
+  template <int dim>
+  void
+  AdmissibleSpace<dim>::rotate(const std::vector<types::global_dof_index> &dofs,
+                               FullMatrix<double> &cell_matrix) const
+  {
+    if (rotated_nodes.empty())
+      return;
+    const unsigned int n = dofs.size();
+    // Cell degrees of freedom come node by node for FE_Q(1).
+    for (unsigned int a = 0; a < n; a += dim)
+      {
+        if (hanging_cartesian.is_constrained(dofs[a]))
+          continue;
+        const NodalFrame<dim> &frame =
+          frames[frame_of_node[relevant.index_within_set(dofs[a]) / dim]];
+        if (frame.is_cartesian)
+          continue;
+        const Tensor<2, dim> &R = frame.directions;
+        for (unsigned int j = 0; j < n; ++j)
+          {
+            Tensor<1, dim> block;
+            for (unsigned int d = 0; d < dim; ++d)
+              block[d] = cell_matrix(a + d, j);
+            block = transpose(R) * block;
+            for (unsigned int d = 0; d < dim; ++d)
+              cell_matrix(a + d, j) = block[d];
+          }
+        for (unsigned int i = 0; i < n; ++i)
+          {
+            Tensor<1, dim> block;
+            for (unsigned int d = 0; d < dim; ++d)
+              block[d] = cell_matrix(i, a + d);
+            block = block * R;
+            for (unsigned int d = 0; d < dim; ++d)
+              cell_matrix(i, a + d) = block[d];
+          }
+      }
+  }
+
+
+
+  template void
+  AdmissibleSpace<2>::make_sparsity_pattern(
+    TrilinosWrappers::SparsityPattern &) const;
+  template void
+  AdmissibleSpace<2>::get_dofs(
+    const typename DoFHandler<2>::active_cell_iterator &,
+    std::vector<types::global_dof_index> &) const;
+  template void
+  AdmissibleSpace<2>::add_cell_matrix(
+    const std::vector<types::global_dof_index> &,
+    FullMatrix<double> &,
+    DistributedMatrix &) const;
+  template void
+  AdmissibleSpace<3>::make_sparsity_pattern(
+    TrilinosWrappers::SparsityPattern &) const;
+  template void
+  AdmissibleSpace<3>::get_dofs(
+    const typename DoFHandler<3>::active_cell_iterator &,
+    std::vector<types::global_dof_index> &) const;
+  template void
+  AdmissibleSpace<3>::add_cell_matrix(
+    const std::vector<types::global_dof_index> &,
+    FullMatrix<double> &,
+    DistributedMatrix &) const;
+} // namespace Viscoplastic

@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <viscoplastic_contact/discretization/conditions_at_nodes.h>
+
+namespace Viscoplastic
+{
+  template <int dim>
+  ConditionsAtNodes<dim>
+  conditions_at_nodes(
+    const DoFHandler<dim>                          &dof_handler,
+    const Scene<dim>                               &scene,
+    const AffineConstraints<double>                &hanging_nodes,
+    const std::map<types::boundary_id, MortarRows> &mortar_rows,
+    const std::vector<Point<dim>>                  &node_position)
+  {
+    const IndexSet &owned = dof_handler.locally_owned_dofs();
+
+    std::vector<const BoundaryCondition<dim> *> listed;
+    for (const auto &pair : scene.boundary)
+      if (pair.second.constrains() || pair.second.has_contact_points())
+        listed.push_back(&pair.second);
+    const std::size_t n_boundaries = listed.size();
+    for (const Support<dim> &support : scene.supports)
+      listed.push_back(&support.condition);
+    AssertThrow(listed.size() <= 52,
+                ExcMessage("At most 52 boundary ids and supports may carry "
+                           "displacement or contact conditions."));
+
+    // What holds an absent material does not hold the nodes that it shares with
+    // the body.
+    std::vector<bool> is_of_body(scene.has_stages() ? node_position.size() : 0,
+                                 false);
+    if (scene.has_stages())
+      for (const auto &cell : dof_handler.active_cell_iterators())
+        if (!cell->is_artificial() && scene.is_present(cell->material_id()))
+          for (const unsigned int v : cell->vertex_indices())
+            if (const auto dof = cell->vertex_dof_index(v, 0);
+                owned.is_element(dof))
+              is_of_body[owned.index_within_set(dof) / dim] = true;
+    const auto is_released = [&](const auto &cell, const std::size_t node) {
+      return scene.has_stages() && is_of_body[node] &&
+             !scene.is_present(cell->material_id());
+    };
+
+    // For each owned node the boundaries that it is on.
+    const auto boundaries_of_nodes =
+      [&](const std::vector<types::boundary_id> &ids) {
+        std::vector<std::uint64_t> result(node_position.size(), 0);
+        for (const auto &cell : dof_handler.active_cell_iterators())
+          if (!cell->is_artificial())
+            for (const unsigned int f : cell->face_indices())
+              if (cell->face(f)->at_boundary())
+                for (unsigned int i = 0; i < ids.size(); ++i)
+                  if (ids[i] == cell->face(f)->boundary_id())
+                    for (const unsigned int v : cell->face(f)->vertex_indices())
+                      {
+                        const auto dof = cell->face(f)->vertex_dof_index(v, 0);
+                        if (owned.is_element(dof) &&
+                            !hanging_nodes.is_constrained(dof) &&
+                            !is_released(cell,
+                                         owned.index_within_set(dof) / dim))
+                          result[owned.index_within_set(dof) / dim] |=
+                            std::uint64_t(1) << i;
+                      }
+        return result;
+      };
+    std::vector<types::boundary_id> ids;
+    for (unsigned int i = 0; i < n_boundaries; ++i)
+      ids.push_back(listed[i]->id);
+    std::vector<std::uint64_t> mask = boundaries_of_nodes(ids);
+    // Where nothing lies opposite, there is no contact.
+    for (unsigned int i = 0; i < n_boundaries; ++i)
+      if (listed[i]->against)
+        for (std::size_t n = 0; n < mask.size(); ++n)
+          if (mortar_rows.at(ids[i]).count(owned.nth_index_in_set(n * dim) /
+                                           dim) == 0)
+            mask[n] &= ~(std::uint64_t(1) << i);
+    for (unsigned int s = 0; s < scene.supports.size(); ++s)
+      {
+        const Support<dim> &support = scene.supports[s];
+        const std::uint64_t bit     = std::uint64_t(1) << (n_boundaries + s),
+                            all =
+                              (std::uint64_t(1) << support.boundaries.size()) -
+                              1;
+        std::vector<std::uint64_t> here;
+        if (!support.position)
+          here = boundaries_of_nodes(
+            {support.boundaries.begin(), support.boundaries.end()});
+        // Vertices of the coarse mesh are the same numbers on all meshes.
+        for (std::size_t n = 0; n < mask.size(); ++n)
+          if (support.position ? node_position[n] == *support.position :
+                                 here[n] == all)
+            mask[n] |= bit;
+      }
+    return {listed, mask};
+  }
+
+
+
+  template ConditionsAtNodes<2>
+  conditions_at_nodes(const DoFHandler<2> &,
+                      const Scene<2> &,
+                      const AffineConstraints<double> &,
+                      const std::map<types::boundary_id, MortarRows> &,
+                      const std::vector<Point<2>> &);
+  template ConditionsAtNodes<3>
+  conditions_at_nodes(const DoFHandler<3> &,
+                      const Scene<3> &,
+                      const AffineConstraints<double> &,
+                      const std::map<types::boundary_id, MortarRows> &,
+                      const std::vector<Point<3>> &);
+} // namespace Viscoplastic

@@ -159,8 +159,14 @@ namespace Viscoplastic
     const EvaluatedState<dim> &accepted) const
   {
     // Nor does a quantity that no residual changes.
-    if (scene.quantity && accepted.errors.quantity.unsigned_space == 0.)
-      return true;
+    if (scene.quantity)
+      {
+        const QuantityEstimate &quantity = accepted.errors.quantity;
+        if (quantity.of_boundary > 0.)
+          return false;
+        if (quantity.unsigned_space == 0.)
+          return true;
+      }
     const EnergyRounding rounding = energy_rounding(discretization.space,
                                                     discretization.matrix,
                                                     accepted.forces);
@@ -210,7 +216,8 @@ namespace Viscoplastic
                 (1. - creep + creep * std::max(least, so_far / size)));
       }
     const QuantityEstimate &quantity = errors.quantity;
-    if (quantity.unsigned_space == 0.) // nor does friction that cannot change
+    if (quantity.unsigned_space + quantity.of_boundary ==
+        0.) // nor does friction that cannot change
       return 1.;
     // Quantities behave like squares of the energy norm. Where contributions
     // happen to cancel, none of them may become larger. What is settled stays
@@ -221,7 +228,8 @@ namespace Viscoplastic
                  of_mesh =
                    std::max(safety * std::abs(quantity.space_correction -
                                               quantity.settled_space),
-                            quantity.space_of_creep),
+                            quantity.space_of_creep) +
+                   quantity.of_boundary,
                  ratio = std::sqrt(
                    std::max(of_mesh,
                             std::min(quantity.unsigned_space, 0.9 * open)) /

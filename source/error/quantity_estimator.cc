@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <deal.II/base/mpi.h>
 
+#include <viscoplastic_contact/error/boundary_defects.h>
 #include <viscoplastic_contact/error/error_estimator.h>
 #include <viscoplastic_contact/error/quantity_estimator.h>
 
@@ -76,7 +77,8 @@ namespace Viscoplastic
   QuantityEstimator<dim>::products_of_creep(const State<dim> &state,
                                             const double      relaxation_rate,
                                             const double      creep_time,
-                                            const CoulombLaw *law) const
+                                            const CoulombLaw *law,
+                                            Vector<double>   &sides) const
   {
     // After a thousand relaxation times the body is as good as incompressible.
     // To half a power of two, so that linear laws have few matrices.
@@ -123,9 +125,13 @@ namespace Viscoplastic
       };
     Vector<double> products =
       space_estimator.multiply_recovered(state, dual, linearization);
+    sides = missing_sides(discretization, state, dual.cartesian);
     // The longer step moves the body more by the same force.
     if (discretization.scene().quantity->is_force())
-      products *= linearization.share;
+      {
+        products *= linearization.share;
+        sides *= linearization.share;
+      }
     return products;
   }
 
@@ -248,7 +254,17 @@ namespace Viscoplastic
     const CoulombLaw *const         linearized = law ? &*law : nullptr;
     const DualSolution<dim>         dual =
       dual_problem.solve(solver, state.contact, linearized);
-    double mesh = 0., time = 0.;
+    const auto size_of = [&](const Vector<double> &parts) {
+      const double here[] = {parts.mean_value() * parts.size(),
+                             parts.l1_norm()};
+      double       sums[2];
+      Utilities::MPI::sum(ArrayView<const double>(here),
+                          d.space.communicator,
+                          ArrayView<double>(sums));
+      return std::max(std::abs(sums[0]), least_share * sums[1]);
+    };
+    double         mesh = 0., time = 0., boundary = 0.;
+    Vector<double> sides;
     if (dual.norm > 0.)
       {
         const double memory = tangent && end.rate ?
@@ -269,6 +285,8 @@ namespace Viscoplastic
           Utilities::MPI::sum(sums, d.space.communicator, sums);
         };
         add_up();
+        sides    = missing_sides(d, state, dual.cartesian);
+        boundary = size_of(sides);
         // Forces forget what has crept, but nothing is known of the signs then.
         estimate.space_of_creep = 0.;
         if (quantity.is_force() && errors.energy_norm > 0.)
@@ -277,11 +295,18 @@ namespace Viscoplastic
         if (tangent && end.rate &&
             end.rate->relaxation_rate * errors.creep_time > elastic)
           {
-            const double of_residuals = sums[0];
-            indicators                = products_of_creep(state,
+            const double   of_residuals = sums[0];
+            Vector<double> crept;
+            indicators = products_of_creep(state,
                                            end.rate->relaxation_rate,
                                            errors.creep_time,
-                                           linearized);
+                                           linearized,
+                                           crept);
+            if (const double size = size_of(crept); size > boundary)
+              {
+                boundary = size;
+                sides    = std::move(crept);
+              }
             add_up();
             estimate.space_of_creep =
               std::max(estimate.space_of_creep, least_share * sums[2]);
@@ -309,6 +334,14 @@ namespace Viscoplastic
         if (end.space_estimate.squared_indicators.size() > 0)
           end.space_estimate.squared_indicators = std::move(indicators);
       }
+    const Vector<double> held =
+      held_friction(d, state, quantity, dual.cartesian);
+    boundary += size_of(held);
+    estimate.of_boundary = boundary;
+    if (Vector<double> &indicators = end.space_estimate.squared_indicators;
+        indicators.size() > 0)
+      for (unsigned int c = 0; c < indicators.size(); ++c)
+        indicators[c] += held[c] + (sides.size() > 0 ? std::abs(sides[c]) : 0.);
     const Vector<double> &of_geometry = end.space_estimate.geometry;
     double                geometry    = 0.;
     if (of_geometry.size() > 0) // on all ranks
@@ -323,7 +356,7 @@ namespace Viscoplastic
     estimate.time_correction  = estimate.settled_time + time;
     estimate.space = std::max(safety * std::abs(estimate.space_correction),
                               estimate.space_of_creep) +
-                     geometry * estimate.dual_norm;
+                     geometry * estimate.dual_norm + boundary;
     // A part of all forces changes forces by that part, also where the dual
     // solution is zero, as where all points slip.
     const auto of_swing = [&](const double energy_norm, const double share) {

@@ -77,6 +77,8 @@ namespace Viscoplastic
     double unsigned_space = 0.;
     /// What creep has made of the error of the mesh, without signs.
     double space_of_creep = 0.;
+    /// What the boundary adds, see missing_sides() and held_friction().
+    double of_boundary = 0.;
     /// Of slip that turns and that comes to rest within steps, summed.
     double turning = 0., resting = 0.;
     /// What the step has added to `friction', and by data that swing to `time'.
@@ -91,8 +93,8 @@ namespace Viscoplastic
     {
       ErrorParts::exchange(archive);
       archive &value &space_correction &time_correction &settled_space
-        &settled_time &unsigned_space &space_of_creep &turning &resting
-          &dual_norm &dual_error;
+        &settled_time &unsigned_space &space_of_creep &of_boundary &turning
+          &resting &dual_norm &dual_error;
     }
   };
 

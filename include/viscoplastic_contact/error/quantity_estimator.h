@@ -39,6 +39,7 @@ namespace Viscoplastic
    *   The larger of this and of a(e_u, e_w) counts. T is t under steady loads,
    *   less while they grow, and has no bound where stress relaxes: C and what
    *   forces remember fade as it does.
+   * - the boundary: missing_sides() and held_friction(), which R does not know.
    * - time steps: R_z(w) = -(D, eps(w)) with the sum D of the defects of all
    *   steps (see ErrorEstimator).
    * - slip that turns or comes to rest within a step is wrong by defects d_c
@@ -113,12 +114,14 @@ namespace Viscoplastic
                      QuantityEstimate        &estimate) const;
 
     /// What the errors of rates have done to the quantity by the end of a
-    /// step, by active cell, with ErrorEstimate::creep_time. Collective.
+    /// step, by active cell, with ErrorEstimate::creep_time; and
+    /// missing_sides() of the dual solution of creep. Collective.
     Vector<double>
     products_of_creep(const State<dim> &state,
                       const double      relaxation_rate,
                       const double      creep_time,
-                      const CoulombLaw *law) const;
+                      const CoulombLaw *law,
+                      Vector<double>   &sides) const;
 
     /// Settle what later steps will not change in the error of a sum.
     void

@@ -17,7 +17,7 @@ DASHES = (0, (5, 3))
 MANY = 3000  # cells beyond which mesh lines would hide the colors
 
 CELL_DATA = (
-    *("stress_", "irreversible_", "strain_", "creep_", "principal_stress_"),
+    *("stress_", "irreversible_", "strain_", "creep_", "principal_stress_", "history_"),
     *("von_mises", "pressure", "estimator", "error_energy", "recovery", "subdomain"),
 )
 

@@ -31,6 +31,7 @@ TENSORS = {
     "stress": ("stress", r"\sigma", "stress"),
     "irreversible_stress": ("irreversible stress", "z", "stress"),
     "strain": ("strain", r"\varepsilon", None),
+    "history": ("history variable", r"\alpha", None),
     "irreversible_strain": ("irreversible strain", r"\varepsilon^\mathrm{i}", None),
     "principal_stress": ("principal stress", r"\sigma", "stress"),
 }

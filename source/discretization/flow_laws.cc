@@ -179,24 +179,6 @@ namespace Viscoplastic
 
 
   template <int dim>
-  void
-  FlowLaws<dim>::begin_history(const std::vector<bool> &cells,
-                               State<dim>              &state) const
-  {
-    if (!stress_space.space.scene.has_history())
-      return;
-    const unsigned int n   = stress_space.n_samples;
-    const AtTime       now = at(state.t);
-    state.history.resize(stress_space.n_cells() * n);
-    for (std::size_t c = 0; c < stress_space.n_cells(); ++c)
-      if (const ViscoplasticLaw *law = now.law(c); law && cells[c])
-        for (unsigned int s = 0; s < n; ++s)
-          law->set_initial_history(now.point(c, s), state.history[c * n + s]);
-  }
-
-
-
-  template <int dim>
   SymmetricTensor<2, 3>
   FlowLaws<dim>::source(const AtTime                           &now,
                         const std::size_t                       cell,

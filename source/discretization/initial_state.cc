@@ -297,6 +297,8 @@ namespace Viscoplastic
       state.z = initial_irreversible_stress(stress_space, state.u);
     if (scene.has_initial_thermal_stress())
       ThermalStrain<dim>(stress_space).add_stress(0., 1., state.z);
+    if (scene.has_history())
+      state.history.resize(state.z.size());
     return state;
   }
 

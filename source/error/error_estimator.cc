@@ -51,16 +51,15 @@ namespace Viscoplastic
 
 
 
-    /// What a step of backward Euler to this stress makes of the history
-    /// variables, and what it adds to z.
-    struct HistoryStep
+    /// What becomes of an error of the history variables of @p point in a step
+    /// of backward Euler to this stress, and what it adds to z meanwhile: the
+    /// difference of two steps.
+    struct CarriedError
     {
       SymmetricTensor<2, 3> history, z;
     };
 
-    /// What it makes of an error of those that it starts from: the difference
-    /// of two steps.
-    HistoryStep
+    CarriedError
     carry_history_error(const ViscoplasticLaw       &law,
                         const SymmetricTensor<2, 3> &error,
                         const SymmetricTensor<2, 3> &stress,
@@ -69,20 +68,19 @@ namespace Viscoplastic
                         const Stiffness             &stiffness,
                         LawPoint                     point)
     {
-      const auto step = [&](const SymmetricTensor<2, 3> &from) {
-        point.history = &from;
-        const SymmetricTensor<2, 3> history =
-          law.history_after_step(stress, strain, k, stiffness, point);
-        point.history = &history;
-        return HistoryStep{history,
-                           k * law.rate(stress, strain, stiffness, point)};
-      };
-      const SymmetricTensor<2, 3> start   = *point.history;
-      HistoryStep                 with    = step(start + error);
-      const HistoryStep           without = step(start);
-      with.history -= without.history;
-      with.z -= without.z;
-      return with;
+      CarriedError                result;
+      const SymmetricTensor<2, 3> start = *point.history;
+      for (const double with : {1., -1.})
+        {
+          const SymmetricTensor<2, 3> from = with > 0. ? start + error : start;
+          point.history                    = &from;
+          const SymmetricTensor<2, 3> history =
+            law.history_after_step(stress, strain, k, stiffness, point);
+          point.history = &history;
+          result.history += with * history;
+          result.z += with * k * law.rate(stress, strain, stiffness, point);
+        }
+      return result;
     }
 
 
@@ -255,24 +253,27 @@ namespace Viscoplastic
     state.remembered_error = accepted.remembered_error;
     state.history_error    = accepted.history_error;
     state.history_slope.resize(accepted.history_slope.size());
-    // What a step has left out of z or history, to leading order, and its
-    // slope.
+    // What a step has left out of z or history, to leading order, whose rate
+    // has changed; and the slope of that.
     const auto defect_of = [&](const SymmetricTensor<2, 3> &change,
-                               const SymmetricTensor<2, 3> &old_slope,
-                               SymmetricTensor<2, 3>       &slope) {
+                               const std::size_t            i,
+                               const IrreversibleStress    &old_slopes,
+                               IrreversibleStress          &slopes) {
       SymmetricTensor<2, 3> step = defect.first * k * change;
-      slope                      = change / k;
+      if (is_second)
+        slopes[i] = change / k;
       // There is no second derivative before the second step.
-      if (has_slope)
+      if (is_second && has_slope)
         step += defect.second * k * k * k * 2. / (k + accepted.k) *
-                (slope - old_slope);
+                (slopes[i] - old_slopes[i]);
       return step;
     };
     std::vector<double>                  sums(6, 0.);
     std::vector<SymmetricTensor<2, 3>>   strains(stress_space.n_samples);
     std::optional<SymmetricTensor<4, 3>> fading;
     SymmetricTensor<4, 3>                relaxation;
-    SymmetricTensor<2, 3>                stress;
+    SymmetricTensor<2, 3>                stress, strain;
+    LawPoint                             point;
     bool                                 is_uniform     = false;
     const ViscoplasticLaw               *last_law       = nullptr;
     const Stiffness                     *last_stiffness = nullptr;
@@ -296,36 +297,62 @@ namespace Viscoplastic
               relaxation =
                 error_relaxation(*law, {}, {}, k, stiffness, now.point(c, 0));
           }
-        last_law                = law;
-        last_stiffness          = &stiffness;
-        const bool needs_stress = law && ((fades && of_loads > 0.) ||
-                                          ((relaxes || fades) && !is_uniform) ||
-                                          law->n_history_variables > 0);
+        last_law             = law;
+        last_stiffness       = &stiffness;
+        const bool remembers = law && law->n_history_variables > 0;
+        const bool needs_stress =
+          law && ((fades && of_loads > 0.) ||
+                  ((relaxes || fades) && !is_uniform) || remembers);
         if (needs_stress)
           stress_space.strains(c, state.u.begin(), strains.data());
         for (unsigned int s = 0; s < stress_space.n_samples; ++s, ++i)
           {
-            const double weight    = stress_space.weight(c, s);
-            const bool   remembers = law && law->n_history_variables > 0;
-            const SymmetricTensor<2, 3> change =
-              end.rate->rate[i] - accepted_rate.rate[i];
-            SymmetricTensor<2, 3> step =
-              is_second ?
-                defect_of(change, accepted.rate_slope[i], state.rate_slope[i]) :
-                defect.first * k * change;
+            const double                weight = stress_space.weight(c, s);
+            const SymmetricTensor<2, 3> change = end.rate->rate[i] -
+                                                 accepted_rate.rate[i],
+                                        all = defect_of(change,
+                                                        i,
+                                                        accepted.rate_slope,
+                                                        state.rate_slope);
+            SymmetricTensor<2, 3> step      = all, of_history;
+            CarriedError          carried;
             if (needs_stress)
-              stress = stiffness.stress(strains[s]) + state.z[i];
+              {
+                stress = stiffness.stress(strains[s]) + state.z[i];
+                strain = now.mechanical(strains[s], c, s);
+                point  = now.point(c, s);
+              }
             if (law && (relaxes || fades) && !is_uniform)
-              relaxation = error_relaxation(*law,
-                                            stress,
-                                            now.mechanical(strains[s], c, s),
-                                            k,
-                                            stiffness,
-                                            now.point(c, s));
-            const SymmetricTensor<2, 3> all = step;
-            LawPoint                    point;
+              relaxation =
+                error_relaxation(*law, stress, strain, k, stiffness, point);
             if (remembers)
-              point = now.point(c, s);
+              {
+                const SymmetricTensor<2, 3> change_of_history =
+                  end.rate->history_rate[i] - accepted_rate.history_rate[i];
+                // By k^2 alpha''/2 Heun's predictor misses the history of the
+                // end, half of which counts.
+                const SymmetricTensor<2, 3> predicted =
+                  -3. * defect.second * k * change_of_history;
+                carried =
+                  carry_history_error(*law,
+                                      state.history_error[i] + predicted,
+                                      stress,
+                                      strain,
+                                      k,
+                                      stiffness,
+                                      point);
+                state.history_error[i] = carried.history - predicted +
+                                         defect_of(change_of_history,
+                                                   i,
+                                                   accepted.history_slope,
+                                                   state.history_slope);
+                LawPoint after = point;
+                after.history  = &state.history[i];
+                if (fades)
+                  of_history = defect.first * k *
+                               (law->rate(stress, strain, stiffness, after) -
+                                law->rate(stress, strain, stiffness, point));
+              }
             if (fades)
               {
                 // The loads have changed G by no more than r times the change
@@ -341,48 +368,13 @@ namespace Viscoplastic
                     share = most < size ? most / size : 1.;
                   }
                 // Nor is what the history has changed relaxation of stress.
-                SymmetricTensor<2, 3> of_history;
-                if (remembers)
-                  {
-                    const SymmetricTensor<2, 3> strain =
-                      now.mechanical(strains[s], c, s);
-                    LawPoint after = point;
-                    after.history  = &state.history[i];
-                    of_history     = defect.first * k *
-                                 (law->rate(stress, strain, stiffness, after) -
-                                  law->rate(stress, strain, stiffness, point));
-                  }
                 step =
                   share * all +
                   (1. - share) * (of_history + relaxation * (all - of_history));
               }
-            if (remembers)
-              {
-                const SymmetricTensor<2, 3> change_of_history =
-                  end.rate->history_rate[i] - accepted_rate.history_rate[i];
-                // By k^2 alpha''/2 Heun's predictor misses the history of the
-                // end, half of which counts.
-                const SymmetricTensor<2, 3> predicted =
-                  -3. * defect.second * k * change_of_history;
-                const HistoryStep carried =
-                  carry_history_error(*law,
-                                      state.history_error[i] + predicted,
-                                      stress,
-                                      now.mechanical(strains[s], c, s),
-                                      k,
-                                      stiffness,
-                                      point);
-                state.history_error[i] =
-                  carried.history - predicted +
-                  (is_second ? defect_of(change_of_history,
-                                         accepted.history_slope[i],
-                                         state.history_slope[i]) :
-                               defect.first * k * change_of_history);
-                state.time_error[i] += carried.z;
-                if (relaxes)
-                  state.remembered_error[i] += carried.z;
-              }
-            state.time_error[i] += step;
+            state.time_error[i] += carried.z + step;
+            if (relaxes)
+              state.remembered_error[i] += carried.z;
             if (fading)
               state.time_error[i] = *fading * state.time_error[i];
             // Steps are chosen with the slope as the change of slope there.

@@ -87,13 +87,6 @@ namespace Viscoplastic
         return result;
       }
 
-      void
-      set_initial_history(const LawPoint        &point,
-                          SymmetricTensor<2, 3> &history) const override
-      {
-        law->set_initial_history(point, history);
-      }
-
       SymmetricTensor<2, 3>
       history_rate(const SymmetricTensor<2, 3> &stress,
                    const SymmetricTensor<2, 3> &strain,

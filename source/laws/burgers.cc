@@ -192,21 +192,19 @@ namespace Viscoplastic
       static std::vector<LawParameter>
       read(const LawSection &section, const bool is_linear)
       {
+        using Range = LawParameter::Range;
         std::vector<LawParameter> result;
         for (const char *entry :
              {"Maxwell viscosity", "Kelvin modulus", "Kelvin viscosity"})
-          result.emplace_back(section, entry, LawParameter::Range::positive);
-        if (is_linear)
-          return result;
-        for (const char *entry : {"Maxwell viscosity exponent",
-                                  "Kelvin modulus exponent",
-                                  "Kelvin viscosity exponent"})
-          result.emplace_back(section,
-                              entry,
-                              LawParameter::Range::non_positive);
-        result.emplace_back(section,
-                            "Stress cap",
-                            LawParameter::Range::positive);
+          result.emplace_back(section, entry, Range::positive);
+        if (!is_linear)
+          {
+            for (const char *entry : {"Maxwell viscosity exponent",
+                                      "Kelvin modulus exponent",
+                                      "Kelvin viscosity exponent"})
+              result.emplace_back(section, entry, Range::non_positive);
+            result.emplace_back(section, "Stress cap", Range::positive);
+          }
         return result;
       }
 
@@ -246,36 +244,41 @@ namespace Viscoplastic
 
 
 
-    void
-    declare(ParameterHandler  &prm,
-            const std::string &entry,
-            const std::string &value,
-            const std::string &help)
+    struct Entry
     {
-      prm.declare_entry(entry, value, Patterns::Anything(), help);
+      const char *name, *value, *help, *unit;
+    };
+
+    void
+    declare(ParameterHandler &prm, const std::vector<Entry> &entries)
+    {
+      for (const auto &[entry, value, help, unit] : entries)
+        prm.declare_entry(entry,
+                          value,
+                          Patterns::Anything(),
+                          help +
+                            std::string(", an expression of position and "
+                                        "t. Unit: ") +
+                            unit + ".");
     }
 
     void
     declare_burgers(ParameterHandler &prm)
     {
-      const std::string expression =
-        ", an expression of position and t. Unit: ";
       declare(prm,
-              "Maxwell viscosity",
-              "1",
-              "The shear viscosity eta_M > 0 of steady creep" + expression +
-                "stress times time.");
-      declare(
-        prm,
-        "Kelvin modulus",
-        "1",
-        "The shear modulus G_K > 0, from which transient creep comes back" +
-          expression + "stress.");
-      declare(prm,
-              "Kelvin viscosity",
-              "1",
-              "The shear viscosity eta_K > 0 of transient creep" + expression +
-                "stress times time.");
+              {{"Maxwell viscosity",
+                "1",
+                "The shear viscosity eta_M > 0 of steady creep",
+                "stress times time"},
+               {"Kelvin modulus",
+                "1",
+                "The shear modulus G_K > 0, from which transient creep comes "
+                "back",
+                "stress"},
+               {"Kelvin viscosity",
+                "1",
+                "The shear viscosity eta_K > 0 of transient creep",
+                "stress times time"}});
     }
   } // namespace
 
@@ -317,20 +320,15 @@ namespace Viscoplastic
       "und Felderfahrungen im Salzkavernenbau, Enke 1984.";
     law.declare = [](ParameterHandler &prm) {
       declare_burgers(prm);
-      for (const auto &[name, symbol] :
-           {std::make_pair("Maxwell viscosity", "m"),
-            std::make_pair("Kelvin modulus", "k_1"),
-            std::make_pair("Kelvin viscosity", "k_2")})
-        declare(prm,
-                name + std::string(" exponent"),
-                "0",
-                symbol + std::string(" <= 0, an expression of position and t. "
-                                     "Unit: 1/stress."));
       declare(prm,
-              "Stress cap",
-              "10",
-              "The von Mises stress beyond which these factors stay as they "
-              "are, an expression of position and t. Unit: stress.");
+              {{"Maxwell viscosity exponent", "0", "m <= 0", "1/stress"},
+               {"Kelvin modulus exponent", "0", "k_1 <= 0", "1/stress"},
+               {"Kelvin viscosity exponent", "0", "k_2 <= 0", "1/stress"},
+               {"Stress cap",
+                "10",
+                "The von Mises stress beyond which these factors stay as they "
+                "are",
+                "stress"}});
     };
     law.make = [](const LawSection &section) {
       return std::make_unique<Burgers>(section, /* is_linear = */ false);

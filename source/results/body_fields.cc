@@ -153,6 +153,9 @@ namespace Viscoplastic
           case RecordedField::creep_rate:
             result.emplace_back("creep_rate");
             break;
+          case RecordedField::history:
+            add_tensor("history");
+            break;
           case RecordedField::principal_stresses:
             for (const char *number : {"1", "2", "3"})
               result.push_back(std::string("principal_stress_") + number);
@@ -247,6 +250,11 @@ namespace Viscoplastic
           case RecordedField::creep_rate:
             result.push_back(
               equivalent_strain(minus_strain(stress_space, rate, cell)));
+            break;
+          case RecordedField::history:
+            append<dim>(stress_space.mean(
+                          cell, &state.history[cell * stress_space.n_samples]),
+                        result);
             break;
           case RecordedField::principal_stresses:
             for (const double value : eigenvalues(stress))

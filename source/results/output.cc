@@ -35,6 +35,8 @@ namespace Viscoplastic
                                      RecordedField::von_mises_stress};
       if (scene.has_irreversible_stress())
         result.insert(RecordedField::irreversible_stress);
+      if (scene.has_history())
+        result.insert(RecordedField::history);
       if (scene.temperature)
         result.insert(RecordedField::temperature);
       for (const auto &[asked, field] :

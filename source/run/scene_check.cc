@@ -306,8 +306,6 @@ namespace Viscoplastic
     const bool          equilibrate = parameters.initial_state.equilibrate;
     EvaluatedState<dim> initial;
     initial.state = make_initial_state(d.stress_space, equilibrate);
-    d.laws.begin_history(std::vector<bool>(d.stress_space.n_cells(), true),
-                         initial.state);
     if (!equilibrate)
       {
         check_compatibility(d, initial.state, d.loads.assemble(0.));

@@ -139,8 +139,6 @@ namespace Viscoplastic
     if (discretization.scene().has_unilateral_contact())
       state.contact = contact_on_new_mesh(discretization, state, this->density);
     enter_stage(discretization.stress_space, was_present, state);
-    was_present.flip();
-    discretization.laws.begin_history(was_present, state);
     time_stepper.settle(accepted);
     this->complete(discretization, 0., 0., accepted);
     time_stepper.estimate(accepted);

@@ -256,8 +256,6 @@ namespace Viscoplastic
       {
         const Discretization<dim> &d = *discretization;
         accepted.state = make_initial_state(d.stress_space, equilibrate);
-        d.laws.begin_history(std::vector<bool>(d.stress_space.n_cells(), true),
-                             accepted.state);
         accepted.rate.reset();
         if (error_estimator)
           {

@@ -22,6 +22,10 @@ namespace Viscoplastic
                       ExcMessage("'" + entry + "': there is no `" +
                                  name_of(field) +
                                  "' where no boundary has the role contact."));
+          AssertThrow(field != RecordedField::history || scene.has_history(),
+                      ExcMessage("'" + entry +
+                                 "': there is no `history' where "
+                                 "no law has history variables."));
           AssertThrow(!is_of_friction(field) || scene.has_friction(),
                       ExcMessage("'" + entry + "': there is no `" +
                                  name_of(field) +

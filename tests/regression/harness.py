@@ -61,6 +61,7 @@ EFFORT = {
 CELL_DATA = (
     *("stress_", "irreversible_stress_", "von_mises", "estimator", "subdomain"),
     *("strain_", "irreversible_strain_", "creep_", "principal_stress_", "temperature"),
+    "history_",
 )
 
 # Columns that are errors of the solution of one step, compared with bounds,

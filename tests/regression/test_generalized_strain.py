@@ -187,6 +187,66 @@ class Cylinder(TestCase):
                 self.assertLess(effectivity, 1.5)
 
 
+    def test_bodies_of_revolution(self):
+        """The section of a long body of revolution whose ends are free: the same in
+        the middle, but for the meshes, steady creep and a transient one."""
+        laws = {
+            "norton": {"Rate factor": 30, "Exponent": 3, "Stress cap": 10},
+            "burgers": {
+                "Maxwell viscosity": 3,
+                "Kelvin modulus": 0.5,
+                "Kelvin viscosity": 0.2,
+            },
+        }
+        pressure = {"Role": "traction", "Pressure": "0.1*t"}
+        for law, values in laws.items():
+            differences = []
+            for n in 1, 2:
+                more = {
+                    **{f"Material/{law}/{name}": v for name, v in values.items()},
+                    "Material/Law": law,
+                    "Time/Scheme": "backward Euler",
+                    "Time/Phases": "1: 4",
+                    "Geometry/Global refinements": n,
+                }
+                quarter = section(
+                    pressure,
+                    "free",
+                    "symmetry",
+                    "symmetry",
+                    **{
+                        **more,
+                        "Geometry/Global refinements": n + 1,
+                        "Geometry/Generator": "quarter_hyper_shell",
+                        "Geometry/Arguments": "0, 0 : 1 : 2 : 4 : true",
+                        "Output/Points": "1, 0; 2, 0",
+                    },
+                )
+                body = section(
+                    pressure,
+                    "free",
+                    "symmetry",
+                    "free",
+                    **{
+                        **more,
+                        "Geometry/Plane model": "axisymmetric",
+                        "Geometry/Arguments": "2, 16 : 1, 0 : 2, 8 : true",
+                        "Output/Points": "1, 0; 2, 0; 1.5, 0.5",
+                    },
+                )
+                if law == "burgers":  # linear, with the exact tangent
+                    self.assertEqual(quarter["newton_iterations"].max(), 1)
+                ours = [quarter[f"point{i}_x"] for i in (0, 1)]
+                there = [body[f"point{i}_x"] for i in (0, 1)]
+                ours.append(quarter["axial_strain"])
+                there.append(body["point2_y"] / 0.5)
+                differences.append(
+                    [abs(a - b).max() / abs(b).max() for a, b in zip(ours, there)]
+                )
+            coarse, fine = np.array(differences)
+            self.assertLess(fine.max(), 5e-4)  # measured: 2.4e-4
+            self.assertGreater(np.log2(coarse / fine).min(), 1.9, law)
+
     def test_creep(self):
         """Power-law creep of a cylinder with free ends, against linear elements in r
         and Heun's method here."""
@@ -363,6 +423,16 @@ class Block(TestCase):
         self.assertClose(layer["reaction_5_z"], ours["axial_force"], relative=1e-7)
         for name in "contact_force_y", "stored_energy", "viscous_dissipation":
             self.assertClose(2 * layer[name], ours[name], relative=1e-7, what=name)
+
+    def test_crowned_floor(self):
+        """Of a linear law with transient creep the loads say it, whatever is
+        touched."""
+        result = run("crowned_floor_2d")
+        self.assertGreater(result["contact_area"][-1], 1.1 * result["contact_area"][0])
+        t = result["t"]
+        expected = 20 * (1e-5 + (t / 200e3 - np.expm1(-t) / 20e3) / 6)
+        self.assertClose(result["axial_strain"][0], expected[0], relative=1e-8)
+        self.assertClose(result["axial_strain"], expected, relative=4e-3)
 
 
 class Refusals(TestCase):

@@ -160,6 +160,15 @@ SCENES = {
         "verification/cantilever_creep": Scene(phases("2.6: 10")),
         "verification/layers": Scene(),
         "verification/excavated_column": Scene(),
+        # forces that are not zero
+        "verification/crowned_floor_2d": Scene(
+            {
+                **phases("2: 4"),
+                "Loads/Axial force": "0.1*t",
+                "Boundary 1/Role": "traction",
+                "Boundary 1/Pressure": "t",
+            }
+        ),
         "verification/uniform_strain": Scene(),
         "verification/perzyna_compression_2d": Scene(phases("1: 20, 4: 20")),
         "verification/perzyna_compression_3d": Scene(phases("1: 20, 4: 20")),

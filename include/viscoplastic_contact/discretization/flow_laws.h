@@ -139,10 +139,6 @@ namespace Viscoplastic
       return AtTime(*this, t, history.empty() ? nullptr : &history);
     }
 
-    /// Give the history variables of these cells their initial values.
-    void
-    begin_history(const std::vector<bool> &cells, State<dim> &state) const;
-
     /**
      * What a manufactured solution adds to G at a sample,
      * sigma' - E eps(u') - G(t, sigma, eps(u)) of that solution; zero in other

@@ -246,15 +246,9 @@ namespace Viscoplastic
              const Stiffness             &stiffness,
              const LawPoint              &point) const = 0;
 
-    /// The number of history variables: the first ones of point.history.
+    /// The number of history variables: the first ones of point.history, zero
+    /// when the material begins to exist.
     const unsigned int n_history_variables;
-
-    /// Their values when the material begins to exist, where they are not the
-    /// zeros that @p history comes with.
-    virtual void
-    set_initial_history(const LawPoint & /*point*/,
-                        SymmetricTensor<2, 3> & /*history*/) const
-    {}
 
     /// H, per time, in components as the history variables.
     virtual SymmetricTensor<2, 3>

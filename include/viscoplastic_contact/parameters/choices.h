@@ -249,6 +249,7 @@ namespace Viscoplastic
     irreversible_strain,
     creep_strain,
     creep_rate,
+    history,
     principal_stresses,
     temperature,
     slip,
@@ -268,7 +269,7 @@ namespace Viscoplastic
   choices(RecordedField)
   {
     return "displacement|velocity|stress|von Mises stress|irreversible stress|"
-           "total strain|irreversible strain|creep strain|creep rate|principal "
+           "total strain|irreversible strain|creep strain|creep rate|history|principal "
            "stresses|temperature|slip|slip rate|traction|bound|utilisation|stick|friction "
            "work|contact pressure|gap|normal traction|stress vector";
   }

@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <deal.II/base/quadrature_lib.h>
+#include <deal.II/fe/fe_values.h>
+
 #include <viscoplastic_contact/contact/contact_points.h>
 #include <viscoplastic_contact/error/dual_problem.h>
 
@@ -16,6 +19,29 @@ namespace Viscoplastic
     /// estimate needs. In short steps rho/|s| is beyond all measure, and the
     /// preconditioner is not made anew for it.
     constexpr double stiffest_spring = 1e3;
+
+
+
+    /// The part of @p v in the directions that a piece with this normal holds.
+    template <int dim>
+    Tensor<1, dim>
+    held(const BoundaryCondition<dim> &condition,
+         const Tensor<1, dim>         &v,
+         const Tensor<1, dim>         &normal)
+    {
+      if (condition.prescribes_all())
+        return v;
+      const Tensor<1, dim> along = tangential(v, normal);
+      Tensor<1, dim>       result;
+      if (condition.is_bilateral() || condition.is_unilateral())
+        result += v - along;
+      if (condition.has_friction())
+        result += along;
+      for (unsigned int d = 0; d < dim; ++d)
+        if (condition.displacement[d])
+          result[d] = v[d];
+      return result;
+    }
   } // namespace
 
 
@@ -31,6 +57,8 @@ namespace Viscoplastic
     if (const auto axial = space.owned_axial();
         axial && quantity.kind == QuantityOfInterest::Kind::axial_strain)
       point_load.begin()[*axial] = 1. / space.axial_length;
+    if (quantity.is_force())
+      find_meetings();
     if (quantity.kind != QuantityOfInterest::Kind::displacement)
       return;
     probe.emplace(space, space.scene.output_points[quantity.number]);
@@ -38,6 +66,89 @@ namespace Viscoplastic
     probe->add_force(Point<dim>::unit_vector(quantity.component), cartesian);
     space.add_cartesian_load(cartesian, point_load);
     make_load_density(cartesian);
+  }
+
+
+
+  template <int dim>
+  void
+  DualProblem<dim>::find_meetings()
+  {
+    using Kind                        = QuantityOfInterest::Kind;
+    const AdmissibleSpace<dim> &space = discretization.space;
+    DistributedVector           w     = space.ghosted_vector();
+    const Tensor<1, dim>        direction =
+      Point<dim>::unit_vector(quantity.component);
+    space.to_cartesian(prescribed(), w);
+    FEFaceValues<dim> face_values(space.mapping,
+                                  space.dof_handler.get_fe(),
+                                  QGauss<dim - 1>(2),
+                                  update_values | update_normal_vectors |
+                                    update_JxW_values);
+    for (std::size_t c = 0; c < space.cells.size(); ++c)
+      for (const unsigned int f : space.cells[c]->face_indices())
+        {
+          const auto &cell = space.cells[c];
+          if (!cell->at_boundary(f))
+            continue;
+          const auto                    id = cell->face(f)->boundary_id();
+          const BoundaryCondition<dim> &condition = space.scene.boundary.at(id);
+          // Of pairs w is a jump.
+          if (condition.against)
+            continue;
+          face_values.reinit(cell, f);
+          const Tensor<1, dim> nu = face_values.normal_vector(0);
+          // What w is meant to be on its own pieces.
+          Tensor<1, dim>       own;
+          const Tensor<1, dim> along = tangential(direction, nu);
+          if (quantity.kind == Kind::reaction && id == quantity.number)
+            own = held(condition, direction, nu);
+          else if (quantity.kind == Kind::friction_force &&
+                   condition.has_friction())
+            own = along;
+          else if (quantity.kind == Kind::contact_force &&
+                   condition.is_unilateral())
+            own = direction - along;
+          for (const unsigned int v : cell->vertex_indices())
+            {
+              Tensor<1, dim> at_node;
+              for (unsigned int d = 0; d < dim; ++d)
+                at_node[d] = w(cell->vertex_dof_index(v, d));
+              Tensor<1, dim> excess = held(condition, at_node, nu) - own;
+              // Friction beside a plane of symmetry is zero.
+              if (quantity.is_reaction() && condition.has_friction())
+                excess -= tangential(excess, nu);
+              // Normals of curved pieces are not those of their faces.
+              if (excess.norm() < 0.1 ||
+                  face_values.shape_value(v * dim, 0) < 1e-10)
+                continue;
+              for (const unsigned int q :
+                   face_values.quadrature_point_indices())
+                for (unsigned int i = 0; i < dim; ++i)
+                  for (unsigned int j = 0; j < dim; ++j)
+                    meetings[c][i][j] += (i == j ? 1. : 0.5) * excess[i] *
+                                         face_values.normal_vector(q)[j] *
+                                         face_values.shape_value(v * dim, q) *
+                                         face_values.JxW(q);
+            }
+        }
+    n_meetings = Utilities::MPI::sum(meetings.size(), space.communicator);
+  }
+
+
+
+  template <int dim>
+  void
+  DualProblem<dim>::add_at_meetings(const State<dim> &state,
+                                    Vector<double>   &parts) const
+  {
+    if (meetings.empty())
+      return;
+    const std::vector<SymmetricTensor<2, 3>> stress =
+      discretization.stress_space.mean_stress(state.u, state.z);
+    for (const auto &[c, of_cell] : meetings)
+      parts[discretization.space.cells[c]->active_cell_index()] +=
+        stress[c] * of_cell;
   }
 
 

@@ -265,13 +265,14 @@ namespace Viscoplastic
     };
     double         mesh = 0., time = 0., boundary = 0.;
     Vector<double> sides;
-    if (dual.norm > 0.)
+    if (dual.norm > 0. || dual_problem.pieces_meet())
       {
         const double memory = tangent && end.rate ?
                                 nonlinearity(d.stress_space, state, *end.rate) :
                                 0.;
-        const auto   products =
+        auto         products =
           space_estimator.multiply(state, end.forces, dual, memory);
+        dual_problem.add_at_meetings(state, products.of_both);
         Vector<double>      indicators(products.of_both);
         std::vector<double> sums(3, 0.);
         const auto          add_up = [&] {
@@ -307,6 +308,7 @@ namespace Viscoplastic
                 boundary = size;
                 sides    = std::move(crept);
               }
+            dual_problem.add_at_meetings(state, indicators);
             add_up();
             estimate.space_of_creep =
               std::max(estimate.space_of_creep, least_share * sums[2]);
@@ -399,7 +401,9 @@ namespace Viscoplastic
     estimate.algebraic = errors.algebraic * estimate.dual_norm;
     estimate.initial   = errors.initial * estimate.dual_error;
     if (is_sum)
-      for (const auto part : {&ErrorParts::history,
+      // Nor are signs known of what has been settled in creep.
+      for (const auto part : {&ErrorParts::space,
+                              &ErrorParts::history,
                               &ErrorParts::friction,
                               &ErrorParts::transfer,
                               &ErrorParts::algebraic,

@@ -141,7 +141,8 @@ namespace Viscoplastic
   {
     if (!budget || !scene.quantity || !pass.has_changed_mesh)
       return false;
-    return QuantityEstimator<dim>::is_of_creep(scene) ||
+    return (QuantityEstimator<dim>::is_of_creep(scene) &&
+            !scene.quantity->is_sum()) ||
            (is_finished() && !pass.follows_another);
   }
 

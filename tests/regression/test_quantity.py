@@ -139,6 +139,40 @@ class Estimated(TestCase):
                 self.assertGreater(abs(error), 0.0002)
                 self.assertGreater(kept["cells"][-1], coarse["cells"][-1])
 
+    def test_where_pieces_meet(self):
+        """A clamped face beside a plane of symmetry: the force at the corner goes to
+        one of them, half a cell of the other included."""
+
+        def layer(n, sides, **more):
+            corners = ", ".join(["0"] * len(n)), ", ".join(["4"] + ["1"] * len(n[1:]))
+            scene = {
+                "Dimension": len(n),
+                "Geometry/Generator": "subdivided_hyper_rectangle",
+                "Geometry/Arguments": f"{', '.join(map(str, n))} : {corners[0]} : "
+                f"{corners[1]} : true",
+                "Boundary 0/Role": "symmetry",
+                "Boundary 1/Role": "traction",
+                "Boundary 1/Traction": "; ".join(["0.1*t"] + ["0"] * len(n[1:])),
+                **{f"Boundary {id}/Role": role for id, role in sides.items()},
+                "Time/Phases": "1: 1",
+                **more,
+            }
+            return run("layer", scene, text="")
+
+        for n, sides in (
+            ((8, 2), {2: "clamped", 3: "free"}),
+            ((8, 2, 2), {2: "symmetry", 3: "free", 4: "clamped", 5: "free"}),
+        ):
+            for column in f"reaction_{2 * len(n) - 2}_x", "reaction_0_x":
+                with self.subTest(dim=len(n), column=column):
+                    coarse = layer(n, sides, **of(column))
+                    fine = layer([4 * i for i in n], sides)
+                    error = (fine[column] - coarse[column])[-1]
+                    quotient = coarse["quantity_correction"][-1] / error
+                    # without the corner: 0.58 to 0.59
+                    self.assertGreater(quotient, 0.8)
+                    self.assertLess(quotient, 1.7)
+
     def test_of_time_steps(self):
         """Few steps on a fine mesh, until all of the face slips."""
         overrides = {"Geometry/Global refinements": 4}

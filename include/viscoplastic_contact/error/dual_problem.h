@@ -8,6 +8,7 @@
 #include <viscoplastic_contact/discretization/state.h>
 #include <viscoplastic_contact/linear_solvers/bulk_solver.h>
 
+#include <map>
 #include <optional>
 
 namespace Viscoplastic
@@ -101,11 +102,30 @@ namespace Viscoplastic
       return quantity.is_reaction() ? -1. : 1.;
     }
 
+    /// Whether a piece that J is the force of meets another one that holds the
+    /// same direction.
+    bool
+    pieces_meet() const
+    {
+      return n_meetings > 0;
+    }
+
+    /// Add to the parts of an error sign J(u) - sign J(u_h), by active cell,
+    /// what pieces that meet hold of each other. The force at a node where two
+    /// of them hold the same direction goes to one, which has the other's
+    /// traction there, too: int sigma_h nu . w on the pieces that hold w, and
+    /// what is missing of w on its own.
+    void
+    add_at_meetings(const State<dim> &state, Vector<double> &parts) const;
+
   private:
     /// Spread the force at a point, by relevant entries, over the faces of the
     /// boundary around its nodes. Collective.
     void
     make_load_density(const std::vector<double> &force);
+
+    void
+    find_meetings();
 
     /// l, in frames.
     DistributedVector
@@ -125,5 +145,8 @@ namespace Viscoplastic
     DistributedVector              point_load; // l of a displacement
     /// Its nodal density on the boundary, Cartesian with ghosts.
     DistributedVector load_density;
+    /// int sym(w nu) of what pieces hold of each other's w, by owned cell.
+    std::map<std::size_t, SymmetricTensor<2, 3>> meetings;
+    std::size_t                                  n_meetings = 0; // on all ranks
   };
 } // namespace Viscoplastic

@@ -169,6 +169,10 @@ namespace Viscoplastic
         report.bound_iterations = bounds->n_moves();
         report.contraction      = bounds->largest_loss();
         report.doubt            = bounds->doubt();
+        // With the sets of the last step it has been said there.
+        if (report.doubt.empty() && report.iterations > 0 &&
+            bounds->may_be_singular() && bulk.has_negative_determinant())
+          report.doubt = "a pivot of the slipping points has changed its sign";
       }
     report.plain_seconds = plain_seconds(timer.wall_time());
     return report;

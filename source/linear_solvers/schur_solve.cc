@@ -17,6 +17,11 @@ namespace Viscoplastic
 {
   namespace
   {
+    /// Solves on faces of so many unknowns cost next to nothing.
+    constexpr unsigned int small_face = 600;
+
+
+
     /// The Schur complement on the truncated space, with springs.
     struct TruncatedFace
     {
@@ -49,29 +54,44 @@ namespace Viscoplastic
 
 
 
-    /// x := the solution for x by factors, where iterations drown in rounding.
-    void
-    solve_densely(const TruncatedFace &system, Vector<double> &x)
+    /// Factors of that as a matrix, with the diagonal of S scaled to 1, and
+    /// the identity where motions are blocked.
+    struct DenseFactors
     {
-      const unsigned int       n = x.size();
-      LAPACKFullMatrix<double> matrix(n);
-      Vector<double>           unit(n), column(n);
-      for (unsigned int j = 0; j < n; ++j)
-        {
-          unit    = 0.;
-          unit[j] = 1.;
-          system.truncation.project(system.face, unit);
-          system.vmult(column, unit);
-          // Blocked directions get a multiple of the identity.
-          const double stiffness = system.S(j, j);
-          for (unsigned int i = 0; i < n; ++i)
-            matrix(i, j) =
-              column[i] + stiffness * ((i == j ? 1. : 0.) - unit[i]);
-        }
-      matrix.compute_lu_factorization();
-      matrix.solve(x);
-      system.truncation.project(system.face, x);
-    }
+      const TruncatedFace      system;
+      Vector<double>           scale;
+      LAPACKFullMatrix<double> matrix;
+
+      explicit DenseFactors(const TruncatedFace &system)
+        : system(system)
+        , scale(system.S.m())
+        , matrix(scale.size())
+      {
+        Vector<double> unit(scale.size()), column(unit);
+        for (unsigned int i = 0; i < scale.size(); ++i)
+          scale[i] = 1. / std::sqrt(system.S(i, i));
+        for (unsigned int j = 0; j < scale.size(); ++j)
+          {
+            unit    = 0.;
+            unit[j] = 1.;
+            system.truncation.project(system.face, unit);
+            system.vmult(column, unit);
+            for (unsigned int i = 0; i < scale.size(); ++i)
+              matrix(i, j) = scale[i] * column[i] * scale[j] -
+                             scale[j] / scale[i] * unit[i] + (i == j ? 1. : 0.);
+          }
+        matrix.compute_lu_factorization();
+      }
+
+      void
+      solve(Vector<double> &x) const
+      {
+        x.scale(scale);
+        matrix.solve(x);
+        x.scale(scale);
+        system.truncation.project(system.face, x);
+      }
+    };
 
 
 
@@ -175,6 +195,14 @@ namespace Viscoplastic
             const double          tolerance,
             Vector<double>       &w) override;
 
+    bool
+    has_negative_determinant() const override
+    {
+      return face.n_dofs() <= small_face &&
+             DenseFactors({solver.schur_complement->matrix(), face, truncation})
+                 .matrix.determinant() < 0.;
+    }
+
     SearchTerms
     search_terms(const Vector<double> &w) override
     {
@@ -276,7 +304,7 @@ namespace Viscoplastic
       }
     // A small face problem costs nothing: solve it to the end, and the active
     // set iteration is finite in 2D. In a large one, follow the caller.
-    const bool   is_small = face.n_dofs() <= 600;
+    const bool   is_small = face.n_dofs() <= small_face;
     const double reduction =
       is_small ? 1e-13 : std::max(1e-13, 0.01 * tolerance);
     SolverControl control(std::max(100u, (is_small ? 1 : 4) * face.n_dofs()),
@@ -301,7 +329,7 @@ namespace Viscoplastic
         // Rounding stopped it; the line search and the error bound judge what
         // comes out.
         if (is_small)
-          solve_densely(system, w = product);
+          DenseFactors(system).solve(w = product);
       }
     truncation.tilt_motions(face, w);
     return 0;

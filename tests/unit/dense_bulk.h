@@ -178,6 +178,15 @@ namespace Viscoplastic::Testing
 
     bool is_finished = false;
 
+    bool
+    has_negative_determinant() const override
+    {
+      LAPACKFullMatrix<double> system(problem.size());
+      system = truncated_matrix();
+      system.compute_lu_factorization();
+      return system.determinant() < 0.;
+    }
+
   private:
     DenseBulk(const Problem                   &problem,
               const bool                       condensed,

@@ -164,6 +164,30 @@ namespace
 
 
 
+  TYPED_TEST(FrictionalSolves, DirectSolverKnowsWhetherPivotsChangeTheirSign)
+  {
+    if (Utilities::MPI::n_mpi_processes(MPI_COMM_WORLD) > 1)
+      return;
+    const BulkScenario<TypeParam::value> scenario(2, 1, false, "unilateral");
+    const unsigned int                   n = scenario.face->layout().n_nodes();
+    Tensor<2, 3>                         identity(unit_symmetric_tensor<3>());
+    FaceTruncation                       truncation;
+    truncation.projector.assign(n, identity);
+    truncation.spring.resize(n);
+    const auto        solver = scenario.direct();
+    DistributedVector u(scenario.start);
+    for (const bool turns : {false, true, false})
+      {
+        truncation.tilt.assign(n, identity);
+        truncation.tilt[n / 2][0][0] = turns ? -1. : 2.;
+        const auto solve             = solver->begin(scenario.load, u);
+        solve->set_truncation(truncation);
+        EXPECT_EQ(solve->has_negative_determinant(), turns);
+      }
+  }
+
+
+
   TYPED_TEST(FrictionalSolves, RoundingOfBlockedForcesIsBlocked)
   {
     // Beside the space no iteration could reduce it, and one on nothing else

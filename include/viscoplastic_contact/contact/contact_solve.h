@@ -149,6 +149,14 @@ namespace Viscoplastic
       return 0;
     }
 
+    /// Whether tilts have made the determinant of the system of correct()
+    /// negative, as far as that is known.
+    virtual bool
+    has_negative_determinant() const
+    {
+      return false;
+    }
+
   private:
     const FaceMatrix *const matrix;
   };

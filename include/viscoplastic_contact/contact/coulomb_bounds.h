@@ -79,6 +79,14 @@ namespace Viscoplastic
       return doubts;
     }
 
+    /// Whether the system itself is worth a look, too: that is what corrections
+    /// so far tell, or friction that may be as large as the pressure.
+    bool
+    may_be_singular() const
+    {
+      return loss >= 0.5 || largest_coefficient >= 1.;
+    }
+
     /**
      * The error of a step whose error for the present bounds is at most @p
      * error. The forces of the solution for these differ from those here by at

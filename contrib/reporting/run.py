@@ -23,7 +23,7 @@ from .page import Page, as_link
 def page(directory):
     """The Page of a directory of results."""
     results = Results(directory)
-    quantities.names_of_places = results.names
+    quantities.set_scene(results)
     about, units = info(results), Units.of(results)
     found = Page(name_of(results))
     found.add(summary(results, about, units))
@@ -233,8 +233,8 @@ def shortened(entries):
     lines, open_sections = [], ()
     for path, value in entries.items():
         *sections, name = path
-        if not value:
-            continue
+        if not value or len(path) == 3 and path[1] not in entries.get((path[0], "Law"), path[1]):
+            continue  # that of a law that the material does not have
         if tuple(sections) != open_sections:
             open_sections = tuple(sections)
             lines.append(f"\n{' / '.join(sections)}" if sections else "")

@@ -22,7 +22,7 @@ from plotting import history, hysteresis, overview, quantities, style
 from plotting.body_base import Scale, folded
 from plotting.geometry import corner_volumes
 from plotting.results import NoPicture, Results, UserError, read_statistics
-from plotting.supports import Supports
+from plotting.supports import Supports, draw_motion
 from plotting.units import DAY, Unit, Units, show
 from viscoplastic_contact.tables import without_unit
 
@@ -62,6 +62,8 @@ class Handy(TestCase):
             (SI, 2, "force density", 2.5e4, "kN/m³", 1e3),
             (SI, 3, "velocity", 2e-5, "µm/s", 1e-6),
             (SI, 2, "energy norm", 0.5, "(J/m)$^{1/2}$", 1),
+            (SI, 2, "rate norm", 0.5, "(J/m/s)$^{1/2}$", 1),
+            (SI, 2, "root of section force", 0.5, "(N)$^{1/2}$", 1),
             # what follows from other units: MPa mm^2 = N, MPa mm = kN/m
             ({"length": "mm", "time": "s", "stress": "MPa"}, 3, "force", 20.0, "N", 1),
             ({"length": "mm", "time": "s", "stress": "MPa"}, 2, "force", 20.0, "kN/m", 1),
@@ -83,6 +85,7 @@ class Handy(TestCase):
     def test_days_in_words(self):
         words = [Unit(1.0, "day").value(number) for number in (1.0, 242.9)]
         self.assertEqual(words, ["1 day", "242.9 days"])
+        self.assertEqual(Unit(1e-18, "$10^{-18}$ mJ").value(0.0), "0 mJ")
         self.assertEqual(Unit(1.0, "day").label("time"), "time [day]")
 
     def test_slow_things_go_by_the_year(self):
@@ -137,6 +140,9 @@ class Handy(TestCase):
             self.assertIn("displacement of point 0", quantities.column("point0_x")[0])
             self.assertTrue(quantities.column("point1_stress_xx")[0].endswith("at crown"))
             self.assertEqual(history.label("reaction_3_x"), "roof, $x$")
+        with mock.patch.object(quantities, "of_interest", "point1_x"):
+            self.assertEqual(quantities.column("quantity_total")[1], "length")
+            self.assertEqual(quantities.column("estimator")[1], "root of length")
         self.assertEqual(quantities.column("t")[1], "time")
         self.assertEqual(quantities.field("stress_yy")[1], "stress")
         self.assertIn("tension positive", quantities.field("stress_yy")[0])
@@ -247,6 +253,15 @@ class Supported(TestCase):
             0, np.array([(0, 0.5)]), np.array([(-1, 0)]), 0.5
         )
         self.assertClose(load, [(0.15, 0)], absolute=1e-9)
+
+    def test_words_of_an_arrow_are_above_it_beside_the_color_bar(self):
+        figure, axes = plt.subplots()
+        self.addCleanup(plt.close, figure)
+        one = np.array([(1.0, 0.0)])
+        piece = SimpleNamespace(s=[1.0], sample=lambda s: (one, one, one))
+        moved = SimpleNamespace(velocity=lambda *_: one, units=Units(SI))
+        draw_motion(axes, piece, moved, 1, 1.0, 0.0)
+        self.assertEqual(axes.texts[1].get_ha(), "center")
 
     def test_walls_that_a_removal_lays_bare(self):
         result = run("excavated_column")
@@ -362,6 +377,19 @@ class Supported(TestCase):
         )
         with self.assertRaisesRegex(NoPicture, "nothing dissipates"):
             hysteresis.draw(results, options)
+        # Of a section in generalized plane strain: its force over its strain.
+        for name in "point0_x", "axial_strain", "axial_force", "viscous_dissipation":
+            statistics[name] = np.arange(3.0)
+        results.data, results.name, results.solution = {}, "bar", []
+        results.units, results.is_of_revolution = SI, lambda: False
+        figure = hysteresis.draw(results, options)
+        self.addCleanup(plt.close, figure)
+        axes = figure.axes[0]
+        self.assertEqual(axes.get_xlabel(), r"axial strain $\varepsilon_{zz}$")
+        self.assertEqual(axes.get_ylabel(), "axial force $N$ [N]")
+        self.assertIn("= 2 J/m: work per unit depth", axes.get_title())
+        options.force = "reaction_1_x"
+        self.assertNotIn("axial_strain", hysteresis.partners(options.force, statistics))
 
 
 if __name__ == "__main__":

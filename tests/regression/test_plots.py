@@ -45,7 +45,7 @@ from plotting.body import tiles
 from plotting.body_3d import VIEW, numbers_at
 from plotting.body_base import MANY, field
 from plotting.expression import evaluate
-from plotting.faces import lines, planes, state_runs
+from plotting.faces import lines, planes, required, state_runs
 from plotting.results import (
     NoPicture,
     Record,
@@ -316,6 +316,10 @@ class Numbers(TestCase):
         )
         self.assertEqual(field(body, "stress_xy").tolist(), [0.0, 0.0])
         self.assertEqual(field(body, "creep_rate").tolist(), [1e-11, 1e-11])
+        moved = np.ones((2, 2))
+        face = Body(displacement=moved, slip=1e-13 * moved, slip_rate=1e-12 * moved)
+        required(SimpleNamespace(contact=[0], face=lambda index: face), 0)
+        self.assertFalse(np.any([face["slip"], face["slip_rate"]]))
 
     def test_edges_once(self):
         """Cells have points of their own; those of an edge count as one."""
@@ -600,6 +604,30 @@ class Numbers(TestCase):
         tops = [line.get_ydata().max() for line in axes.get_lines()[:3]]
         self.assertClose(np.array(tops), np.array([3.0, 1.0, 4.0]), 1e-12)
         plt.close(figure)
+        # The tolerance of a quantity is a share of its largest value.
+        about = {"estimated_error_of_quantity": {"largest_value": 650.0}}
+        results = SimpleNamespace(
+            data={("Error control", "Tolerance"): "0.02"}, about=lambda: about
+        )
+        self.assertEqual(history.tolerance(results, history.QUANTITY), 13.0)
+        self.assertIsNone(history.tolerance(results, history.ERROR))
+        about.clear()
+        self.assertEqual(history.tolerance(results, history.ERROR), 2.0)
+        self.assertIsNone(history.tolerance(results, history.QUANTITY))
+
+    def test_labels_and_colors_of_panels(self):
+        """Labels are no longer than their panel; lines differ."""
+        columns = {"t": np.arange(3.0), "slip_area": np.ones(3), "contact_area": 2 + np.ones(3)}
+        figure, axes = plt.subplots()
+        self.addCleanup(plt.close, figure)
+        units = Units({"length": "m", "stress": "Pa"}, 2)
+        history.draw_panel(axes, history.AREA, list(columns)[1:], [("", columns)], units)
+        self.assertEqual(len({line.get_color() for line in axes.get_lines()}), 2)
+        columns = {"t": np.arange(3.0), "contact_force_x": 1e6 * np.arange(3.0)}
+        panel = history.PANELS[1]
+        history.draw_panel(axes, panel, ["contact_force_x"], [("", columns)], units)
+        label = "contact force\nexerted by the body\n[MN/m]"
+        self.assertEqual(axes.get_ylabel(), label)
 
     def with_columns(self, **columns):
         """Results that have nothing but these columns."""

@@ -191,6 +191,9 @@ class Runs(TestCase):
         for sentence in self.results[3].info["remarks"]:
             self.assertIn(sentence, self.results[3].stdout)
         self.assertIn("mpirun -n 2 ", self.pages[3].text)
+        # Of laws only that of the material.
+        self.assertIn("Material / maxwell", self.pages[2].words["again"])
+        self.assertNotIn("Material / perzyna", self.pages[2].words["again"])
 
     def test_curves_are_the_columns(self):
         for result, page in self.each():

@@ -92,7 +92,7 @@ def plain_number(value, digits=4):
     return f"{value:.{digits}g}" if 1e-3 <= abs(value) < 1e4 else f"{value:.3g}"
 
 
-TEN = r"^\$10\^\{-?\d+\}\$"
+TEN = r"^\$10\^\{-?\d+\}\$ ?"
 
 
 def power_of_ten(largest):

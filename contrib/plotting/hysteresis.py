@@ -80,41 +80,18 @@ def displacements(results, statistics):
             found[f"{name}_{axis}"] = values, (
                 f"{symbol.format(place('boundary', match.group(1)))}, $U_{axis}$"
             )
-    for name, values in statistics.items():
-        match = re.fullmatch(r"point(\d+)_([xyz])", name)
-        if match:
-            found[name] = values, (
-                f"displacement of {place('point', match.group(1))}, $u_{match.group(2)}$"
-            )
-    return {**found, **axial("axial_strain", statistics)}
+    return {**found, **columns(r"point\d+_[xyz]|axial_strain", statistics)}
 
 
 def forces(statistics):
-    found = {}
-    for name, values in statistics.items():
-        match = re.fullmatch(r"(friction|contact)_force_([xyz])", name)
-        if match:
-            found[name] = values, (
-                f"{match.group(1)} force exerted by the body, $F_{match.group(2)}$"
-            )
-        match = re.fullmatch(r"(friction|contact)_force_(\d+)_([xyz])", name)
-        if match:
-            found[name] = values, (
-                f"{match.group(1)} force on {place('boundary', match.group(2))}, "
-                f"$F_{match.group(3)}$"
-            )
-        match = re.fullmatch(r"reaction_(\d+)_([xyz])", name)
-        if match:
-            found[name] = values, (
-                f"reaction of {place('boundary', match.group(1))} on the body, "
-                f"$R_{match.group(2)}$"
-            )
-    return {**found, **axial("axial_force", statistics)}
+    pattern = r"(friction|contact)_force_(\d+_)?[xyz]|reaction_\d+_[xyz]|axial_force"
+    return columns(pattern, statistics)
 
 
-def axial(name, statistics):
-    """That column with its label, in generalized plane strain."""
-    return {n: (statistics[n], column(n)[0]) for n in statistics if n == name}
+def columns(pattern, statistics):
+    """Those whose names match, with their labels."""
+    names = [name for name in statistics if re.fullmatch(pattern, name)]
+    return {name: (statistics[name], column(name)[0]) for name in names}
 
 
 def direction(name):

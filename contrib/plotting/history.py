@@ -362,7 +362,9 @@ def tolerance(results, panel):
     of_quantity = results.about().get("estimated_error_of_quantity")
     if not share > 0.0 or panel is not (QUANTITY if of_quantity else ERROR):
         return None
-    return share * (of_quantity["largest_value"] or np.nan) if of_quantity else 100 * share
+    if of_quantity:
+        return share * (of_quantity["largest_value"] or np.nan)
+    return 100.0 * share
 
 
 def draw_tolerance(axes, limit):

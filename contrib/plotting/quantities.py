@@ -97,7 +97,8 @@ def set_scene(results):
     """Take from results what their scene calls its places and estimates."""
     global names_of_places, of_interest
     names_of_places = results.names
-    of_interest = (results.about().get("estimated_error_of_quantity") or {}).get("quantity")
+    about = results.about().get("estimated_error_of_quantity", {})
+    of_interest = about.get("quantity")
 
 
 def place(kind, number):

@@ -233,8 +233,10 @@ def shortened(entries):
     lines, open_sections = [], ()
     for path, value in entries.items():
         *sections, name = path
-        if not value or len(path) == 3 and path[1] not in entries.get((path[0], "Law"), path[1]):
-            continue  # that of a law that the material does not have
+        # Of laws only that of the material.
+        law = entries.get((path[0], "Law")) if len(path) == 3 else None
+        if not value or law and path[1] not in law:
+            continue
         if tuple(sections) != open_sections:
             open_sections = tuple(sections)
             lines.append(f"\n{' / '.join(sections)}" if sections else "")

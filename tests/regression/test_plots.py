@@ -616,7 +616,8 @@ class Numbers(TestCase):
 
     def test_labels_and_colors_of_panels(self):
         """Labels are no longer than their panel; lines differ."""
-        columns = dict.fromkeys(("t", "slip_area", "contact_area", "contact_force_x"), np.arange(3.0))
+        names = "t", "slip_area", "contact_area", "contact_force_x"
+        columns = dict.fromkeys(names, np.arange(3.0))
         figure, axes = plt.subplots()
         self.addCleanup(plt.close, figure)
         units, runs = Units({"length": "m", "stress": "Pa"}, 2), [("", columns)]

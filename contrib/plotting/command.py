@@ -439,7 +439,7 @@ def main(arguments=None):
                 f"{options.results} holds no study.csv, so it has no errors to draw"
             )
         results = Results(options.results)
-        quantities.names_of_places = results.names
+        quantities.set_scene(results)
         if options.units:
             results.units = options.units
         if options.list:

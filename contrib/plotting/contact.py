@@ -192,6 +192,8 @@ def draw_lines(contact, scale):
         low, high = scale.limits[name]
         if high > low:
             axes.set_ylim(low - 0.08 * (high - low), high + 0.08 * (high - low))
+        else:
+            axes.set_yticks([0.0])
     if has_states:
         occurring = friction_state(contact)
         handles = [SHADES[state] for state in SHADES if (occurring == state).any()]

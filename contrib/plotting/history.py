@@ -54,7 +54,7 @@ class Panel:
         largest = max(sizes.values(), default=0.0)
         if largest <= 0.0:
             return []
-        if self.columns == ["max_gap"] and is_rounding(largest, statistics):
+        if is_rounding(self.columns[0], largest, statistics):
             return []
         if self.changing and not any(np.ptp(statistics[name]) for name in found):
             return []
@@ -66,11 +66,16 @@ class Panel:
         return [name for name in found if sizes[name] > threshold]
 
 
-def is_rounding(gap, statistics):
-    """Whether a gap is nothing beside the displacements."""
-    return gap < 1e-9 * np.abs(
-        finite(statistics.get("max_displacement", np.zeros(1)))
-    ).max(initial=0.0)
+def is_rounding(name, size, statistics):
+    """Whether a gap is nothing beside the displacements, or the work of an axial force
+    beside the energy that is stored."""
+
+    def largest(name):
+        return np.abs(finite(statistics.get(name, np.zeros(1)))).max(initial=0.0)
+
+    if name == "axial_force":
+        return 0.0 < size * largest("axial_strain") < 1e-9 * largest("stored_energy")
+    return name == "max_gap" and size < 1e-9 * largest("max_displacement")
 
 
 AREA = Panel(
@@ -97,6 +102,8 @@ QUANTITY = Panel(
 PANELS = (
     Panel("friction force\nexerted by the body", ["friction_force_(\\d+_)?[xyz]"]),
     Panel("contact force\nexerted by the body", ["contact_force_(\\d+_)?[xyz]"]),
+    Panel("axial force", ["axial_force"]),
+    Panel("axial strain", ["axial_strain"]),
     Panel("reactions\non the body", ["reaction_(point|edge)?\\d+_[xyz]"]),
     Panel("loads on the body", ["load_[xyz]"]),
     AREA,
@@ -161,6 +168,13 @@ NAMES = {
     "force_balance_defect": "force balance",
     "max_von_mises": "largest von Mises",
     "mean_von_mises": "mean von Mises",
+}
+
+
+COLORS = {
+    "slip_area": style.SLIP,
+    "stick_area": style.OUTLINE,
+    "contact_area": style.SERIES[0],
 }
 
 
@@ -309,8 +323,7 @@ def draw_panels(results, panels, statistics, what, options, others=()):
             runs = [(results.name, statistics)]
             runs += [(other.name, other.statistics) for other in others]
         draw_panel(axes, panel, names, runs, units)
-        if panel is (QUANTITY if QUANTITY in [p for p, _ in panels] else ERROR):
-            draw_tolerance(axes, results)
+        draw_tolerance(axes, tolerance(results, panel))
         ends = [run["t"] for _, run in runs]
         if options.log_time:
             axes.set_xscale("log")
@@ -339,12 +352,24 @@ def place_legend(axes, handles, labels):
     )
 
 
-def draw_tolerance(axes, results):
-    tolerance = float(results.data.get(("Error control", "Tolerance"), 0.0))
-    if tolerance > 0.0:
-        axes.axhline(
-            100.0 * tolerance, color="#222222", lw=1.0, ls=":", label="tolerance"
-        )
+def tolerance(results, panel):
+    """What the error had to stay below, if the scene has set that: in per cent of the
+    energy norm, or a number beside the quantity of interest."""
+    try:
+        share = float(results.data.get(("Error control", "Tolerance"), 0.0))
+    except ValueError:
+        return None
+    of_quantity = results.about().get("estimated_error_of_quantity")
+    if not share > 0.0 or panel is not (QUANTITY if of_quantity else ERROR):
+        return None
+    if of_quantity:
+        return share * (of_quantity["largest_value"] or np.nan)
+    return 100.0 * share
+
+
+def draw_tolerance(axes, limit):
+    if limit is not None and np.isfinite(limit):
+        axes.axhline(limit, color="#222222", lw=1.0, ls=":", label="tolerance")
         handles, labels = axes.get_legend_handles_labels()
         if axes.get_legend():
             place_legend(axes, handles, labels)
@@ -360,8 +385,6 @@ def unit_of(panel, names, statistics, units):
     if panel.share_of in statistics:
         return Unit(1.0, "%")
     kind = quantities.column(names[0])[1]
-    if names[0] == "estimator" and "quantity_total" in statistics:
-        kind = None
     values = np.concatenate([finite(statistics[name]) for name in names])
     if panel.logarithmic:
         # The limit of the first steps may be that of nothing at all.
@@ -391,6 +414,10 @@ def draw_panel(axes, panel, names, runs, units):
         else:
             axes.axhline(0.0, color="#aaaaaa", lw=0.6, zorder=0)
         show(axes.yaxis, panel.label, unit, integer=counted)
+    # Longer lines run into the labels of the panels above and below.
+    words = axes.get_ylabel()
+    if max(map(len, words.split("\n"))) > 20:
+        axes.set_ylabel(words.replace(" [", "\n["))
     if len(names) > 1 or panel.columns != names or len(runs) > 1:
         place_legend(axes, *axes.get_legend_handles_labels())
 
@@ -406,7 +433,7 @@ def draw_run(axes, panel, names, shown, statistics, run, number):
         i = names.index(name)
         values = scale * statistics[name].astype(float)
         dashes = ("-", "--", ":", "-.")[(i // 7 + number) % 4]
-        color = style.SERIES[i % 7]
+        color = COLORS.get(name, style.SERIES[i % 7])
         if panel.logarithmic:
             values = np.where(np.isfinite(values) & (values > 0.0), values, np.nan)
         if name == "step_limit" and "k" in names:
@@ -414,10 +441,6 @@ def draw_run(axes, panel, names, shown, statistics, run, number):
             values = np.where(values < 1e3 * statistics["k"].max(), values, np.nan)
         if name == "slip_area" and number == 0:
             axes.fill_between(t, values, step="pre", color=style.SLIP, alpha=0.2, lw=0)
-        if name == "slip_area":
-            color = style.SLIP
-        if name == "stick_area":
-            color = style.OUTLINE
         axes.plot(
             t,
             values,

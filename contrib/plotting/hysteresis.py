@@ -12,7 +12,7 @@ from . import style
 from .expression import evaluate
 from .history import window
 from .layout import number_bar
-from .quantities import place
+from .quantities import column, place
 from .results import NoPicture, UserError
 from .units import Units, show
 
@@ -80,36 +80,30 @@ def displacements(results, statistics):
             found[f"{name}_{axis}"] = values, (
                 f"{symbol.format(place('boundary', match.group(1)))}, $U_{axis}$"
             )
-    for name, values in statistics.items():
-        match = re.fullmatch(r"point(\d+)_([xyz])", name)
-        if match:
-            found[name] = values, (
-                f"displacement of {place('point', match.group(1))}, $u_{match.group(2)}$"
-            )
-    return found
+    return {**found, **columns(r"point\d+_[xyz]|axial_strain", statistics)}
 
 
 def forces(statistics):
-    found = {}
-    for name, values in statistics.items():
-        match = re.fullmatch(r"(friction|contact)_force_([xyz])", name)
-        if match:
-            found[name] = values, (
-                f"{match.group(1)} force exerted by the body, $F_{match.group(2)}$"
-            )
-        match = re.fullmatch(r"(friction|contact)_force_(\d+)_([xyz])", name)
-        if match:
-            found[name] = values, (
-                f"{match.group(1)} force on {place('boundary', match.group(2))}, "
-                f"$F_{match.group(3)}$"
-            )
-        match = re.fullmatch(r"reaction_(\d+)_([xyz])", name)
-        if match:
-            found[name] = values, (
-                f"reaction of {place('boundary', match.group(1))} on the body, "
-                f"$R_{match.group(2)}$"
-            )
-    return found
+    pattern = r"(friction|contact)_force_(\d+_)?[xyz]|reaction_\d+_[xyz]|axial_force"
+    return columns(pattern, statistics)
+
+
+def columns(pattern, statistics):
+    """Those whose names match, with their labels."""
+    names = [name for name in statistics if re.fullmatch(pattern, name)]
+    return {name: (statistics[name], column(name)[0]) for name in names}
+
+
+def direction(name):
+    """Force and displacement make work where they have the same."""
+    return "axial" if name.startswith("axial") else name[-1]
+
+
+def partners(name, found):
+    """Those that make work per unit depth with a force or displacement: the axial
+    force, that of the whole section, with the axial strain alone."""
+    is_axial = direction(name) == "axial"
+    return {n: f for n, f in found.items() if (direction(n) == "axial") == is_axial}
 
 
 def choose(name, found, what, preference):
@@ -149,27 +143,31 @@ def draw(results, options):
             "('Output/Points') nor displacements that the scene prescribes as "
             "expressions of t"
         )
+    if options.displacement:
+        possible_forces = partners(options.displacement, possible_forces)
     moving = {
-        name[-1] for name, (u, _) in possible_displacements.items() if np.ptp(u) > 0.0
+        direction(name) for name, (u, _) in possible_displacements.items() if np.ptp(u) > 0.0
     }
     force = choose(
         options.force,
         possible_forces,
         "force",
         lambda name: (
-            name[-1] in moving,
+            direction(name) in moving,
             name.startswith("friction"),
             drives(name, possible_displacements),
+            direction(name) == "axial",
         ),
     )
     if force is None:
         raise NoPicture("no force changes in that time: no loop to draw")
+    possible_displacements = partners(force, possible_displacements)
     displacement = choose(
         options.displacement,
         possible_displacements,
         "displacement",
         lambda name: (
-            name[-1] == force[-1],
+            direction(name) == direction(force),
             drives(force, [name]),
             name.startswith(("boundary", "foundation")),
         ),
@@ -191,6 +189,7 @@ def draw(results, options):
         possible_forces[force],
         plane=not any(name.endswith("_z") for name in possible_forces)
         and not results.is_of_revolution(),
+        is_axial=direction(force) == "axial",
     )
 
 
@@ -206,25 +205,27 @@ def drives(force, names):
     return bool(match) and f"boundary{match.group(1)}_{match.group(2)}" in names
 
 
-def draw_loop(results, t, displacement, force, plane):
-    """plane: in plane strain forces are those on a unit of thickness."""
+def draw_loop(results, t, displacement, force, plane, is_axial):
+    """plane: in plane strain forces are those on a unit of thickness; is_axial: the
+    force of the whole section over the strain, the displacement of such a unit."""
     (u, u_label), (f, f_label) = displacement, force
     units = Units.of(results)
     time = units.unit("time", results.statistics["t"])
     energy = units.unit("energy", np.ptp(u) * np.ptp(f))
     figure, axes = plt.subplots(figsize=(7.6, 5.6), layout="constrained")
     begin = last_cycle(u, f)
+    of = r"N\,d\varepsilon_{zz}" if is_axial else r"F\,dU"
     if begin is not None:
         axes.fill(u[begin:], f[begin:], color=style.SERIES[5], alpha=0.2, lw=0)
         area = (
-            rf"loop area $\oint F\,dU$ = {energy.value(work(u[begin:], f[begin:]))}: "
+            rf"loop area $\oint {of}$ = {energy.value(work(u[begin:], f[begin:]))}: "
             f"work per cycle{' and unit depth' if plane else ''}"
         )
         if begin > 0:
             area += f" (from $t$ = {time.value(t[begin])})"
     else:
         area = (
-            rf"open path, $\int F\,dU$ = {energy.value(work(u, f))}: "
+            rf"open path, $\int {of}$ = {energy.value(work(u, f))}: "
             f"work{' per unit depth' if plane else ''}"
             f" ($t$ = {time.value(t[0])} to {time.value(t[-1])})"
         )
@@ -245,12 +246,13 @@ def draw_loop(results, t, displacement, force, plane):
     axes.axvline(0.0, color="#aaaaaa", lw=0.6, zorder=0)
     axes.margins(0.06)
     axes.autoscale_view()
-    show(axes.xaxis, u_label, units.unit("length", u))
-    show(axes.yaxis, f_label, units.unit("force", f))
+    kinds = (None, "section force") if is_axial else ("length", "force")
+    show(axes.xaxis, u_label, units.unit(kinds[0], u))
+    show(axes.yaxis, f_label, units.unit(kinds[1], f))
     axes.legend(loc="best")
     axes.set_title(area, pad=10)
     bar = figure.colorbar(path, ax=axes, pad=0.02)
     number_bar(bar, time.label("time $t$"), time)
-    what = "force over displacement"
+    what = "axial force over axial strain" if is_axial else "force over displacement"
     figure.suptitle(style.title(results.name, what), fontsize="large")
     return figure

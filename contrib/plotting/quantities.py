@@ -3,6 +3,8 @@
 
 import re
 
+from . import units
+
 SCALARS = {
     "von_mises": (r"von Mises stress $\sigma_\mathrm{vM}$", "stress"),
     "creep_strain": (r"equivalent creep strain $\varepsilon_\mathrm{c}$", None),
@@ -61,6 +63,8 @@ COLUMNS = [
         "force",
     ),
     ("load_([xyz])", "load on the body, ${0}$", "force"),
+    ("axial_strain", r"axial strain $\varepsilon_{{zz}}$", None),
+    ("axial_force", "axial force $N$", "section force"),
     (r"point(\d+)_([xyz])", "displacement of {point}, ${1}$", "length"),
     ("max_displacement", "largest displacement", "length"),
     ("max_stick_slip|max_slip", None, "length"),
@@ -86,6 +90,16 @@ COLUMNS = [
 
 # What the scene that is drawn calls its places: {"boundary 3": "roof"}.
 names_of_places = {}
+# The column of its quantity of interest, whose unit that of its error is.
+of_interest = None
+
+
+def set_scene(results):
+    """Take from results what their scene calls its places and estimates."""
+    global names_of_places, of_interest
+    names_of_places = results.names
+    about = results.about().get("estimated_error_of_quantity", {})
+    of_interest = about.get("quantity")
 
 
 def place(kind, number):
@@ -132,6 +146,10 @@ def column(name):
     if re.fullmatch("wall_.*", name):
         return plain(f"seconds, {name[5:]}"), None
     words = plain(re.sub("^max_", "largest ", name).replace("_", " "))
+    if of_interest and (name == "estimator" or name.startswith("quantity_")):
+        kind = column(of_interest)[1]
+        # Estimates of cells are recorded as roots.
+        return words, kind and (units.ROOT * (name == "estimator") + kind)
     for pattern, template, kind in COLUMNS:
         match = re.fullmatch(pattern, name)
         if match:

@@ -8,6 +8,7 @@ or without units in a power of ten, which stands in the label.
 """
 
 import math
+import re
 from typing import NamedTuple
 
 import numpy as np
@@ -27,6 +28,8 @@ DERIVED = {
     "energy": {2: "J/m", 3: "J"},
     "surface energy": {2: "J/m²", 3: "J/m²"},
     "force density": {2: "N/m³", 3: "N/m³"},
+    # Of a whole section in generalized plane strain.
+    "section force": {2: "N", 3: "N"},
 }
 
 
@@ -34,7 +37,9 @@ DERIVED = {
 KINDS = (
     *("stress", "length", "time", "area", "volume", "force", "energy"),
     *("surface energy", "force density", "energy norm", "velocity", "rate"),
+    *("rate norm", "section force"),
 )
+ROOT = "root of "  # before a kind, as of what cells estimate
 
 
 def powers(kind, dimension):
@@ -42,6 +47,8 @@ def powers(kind, dimension):
     powers themselves."""
     if isinstance(kind, tuple):
         return kind
+    if kind.startswith(ROOT):
+        return tuple(0.5 * p for p in powers(kind.removeprefix(ROOT), dimension))
     return {
         "stress": (1, 0, 0),
         "length": (0, 1, 0),
@@ -52,6 +59,7 @@ def powers(kind, dimension):
         "energy": (1, dimension, 0),
         "surface energy": (1, 1, 0),
         "force density": (1, -1, 0),
+        "section force": (1, 2, 0),
         "energy norm": (0.5, 0.5 * dimension, 0),
         "stress norm": (1, 0.5 * dimension, 0),
         "rate norm": (0.5, 0.5 * dimension, -0.5),
@@ -72,6 +80,8 @@ class Unit(NamedTuple):
     def value(self, number, digits=4):
         """A number with its unit."""
         text = plain_number(number / self.size, digits)
+        if text == "0":
+            return f"0 {re.sub(TEN, '', self.text)}".strip()
         between = " × " if self.text.startswith("$10") else " "
         several = self.text in ("day", "year") and text != "1"
         unit = self.text + "s" * several
@@ -80,6 +90,9 @@ class Unit(NamedTuple):
 
 def plain_number(value, digits=4):
     return f"{value:.{digits}g}" if 1e-3 <= abs(value) < 1e4 else f"{value:.3g}"
+
+
+TEN = r"^\$10\^\{-?\d+\}\$ ?"
 
 
 def power_of_ten(largest):
@@ -139,7 +152,8 @@ class Units:
             return Unit(10.0**power, ten(power))
         if kind in self.declared and (largest == 0.0 or 1.0 <= largest < 1e4):
             return Unit(1.0, self.declared[kind])
-        if kind in KINDS and all(name in self.known for name in needed):
+        named = isinstance(kind, str) and kind.removeprefix(ROOT) in KINDS
+        if named and all(name in self.known for name in needed):
             return self.multiple(kind, largest)
         return Unit(10.0**power, ten(power, self.composed(kind)))
 
@@ -151,7 +165,7 @@ class Units:
         fitting = [unit for unit in choices if unit.size <= 1.0001 * largest * size]
         unit = max(fitting or choices[:1], key=lambda unit: unit.size)
         if largest == 0.0:
-            unit = min(choices, key=lambda unit: abs(math.log(unit.size)))
+            unit = min(choices, key=lambda unit: abs(math.log(unit.size / size)))
         power = power_of_ten(largest * size / unit.size)
         return Unit(unit.size / size * 10.0**power, ten(power, unit.text))
 
@@ -175,8 +189,17 @@ class Units:
                 for prefix, size in PREFIXES.items()
                 if size <= 1e3
             ]
+        energy = DERIVED["energy"][self.dimension]
         if kind == "energy norm":
-            return [Unit(1.0, f"({DERIVED['energy'][self.dimension]})$^{{1/2}}$")]
+            return [Unit(1.0, f"({energy})$^{{1/2}}$")]
+        if kind == "rate norm":
+            (rate,) = self.choices("rate")
+            per = rate.text.removeprefix("1")
+            return [Unit(rate.size**0.5, f"({energy}{per})$^{{1/2}}$")]
+        if kind.startswith(ROOT):
+            of = self.choices(kind.removeprefix(ROOT))
+            unit = min(of, key=lambda unit: abs(math.log(unit.size)))
+            return [Unit(unit.size**0.5, f"({unit.text})$^{{1/2}}$")]
         if kind in ("area", "volume"):
             power = powers(kind, self.dimension)[1]
             mark = {1: "", 2: "²", 3: "³"}[power]

@@ -46,12 +46,12 @@ def panel_data(results, panel, names, units, rows):
     statistics = results.statistics
     unit = history.unit_of(panel, names, statistics, units)
     is_share = panel.share_of in statistics
-    size, limit = unit.size, None
+    size, limit = unit.size, history.tolerance(results, panel)
     if is_share:
         # Per cent of the largest value of another column.
         size = max(history.finite(statistics[panel.share_of]).max(), 1e-300) / 100.0
-    if panel in ERRORS:
-        limit = tolerance(results, panel, size)
+    if panel is history.QUANTITY and limit is not None:
+        limit = limit / size if math.isfinite(limit) else None
     return {
         "title": formula(panel.label.replace("\n", " ")),
         "unit": formula(unit.text),
@@ -71,26 +71,9 @@ def panel_data(results, panel, names, units, rows):
     }
 
 
-def tolerance(results, panel, size):
-    """The line that the error had to stay below, in the unit of the panel, if the
-    scene has set one."""
-    try:
-        value = float(results.data.get(("Error control", "Tolerance"), 0.0))
-    except ValueError:
-        return None
-    of_quantity = "estimated_error_of_quantity" in info(results)
-    if not value > 0.0 or of_quantity != (panel is history.QUANTITY):
-        return None
-    if panel is history.ERROR:
-        return 100.0 * value
-    return value * info(results)["estimated_error_of_quantity"]["largest_value"] / size
-
-
 def info(results):
     """run.json, or nothing where it is missing."""
-    if not (results.directory / "run.json").exists():
-        return {}
-    about = results.info
+    about = results.about()
     for key in ("estimated_error", "estimated_error_of_quantity"):
         errors = about.get(key, {})
         for part, value in errors.items():

@@ -23,7 +23,7 @@ from .page import Page, as_link
 def page(directory):
     """The Page of a directory of results."""
     results = Results(directory)
-    quantities.names_of_places = results.names
+    quantities.set_scene(results)
     about, units = info(results), Units.of(results)
     found = Page(name_of(results))
     found.add(summary(results, about, units))
@@ -233,7 +233,9 @@ def shortened(entries):
     lines, open_sections = [], ()
     for path, value in entries.items():
         *sections, name = path
-        if not value:
+        # Of laws only that of the material.
+        law = entries.get((path[0], "Law")) if len(path) == 3 else None
+        if not value or law and path[1] not in law:
             continue
         if tuple(sections) != open_sections:
             open_sections = tuple(sections)

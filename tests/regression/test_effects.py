@@ -36,6 +36,7 @@ from plotting import effects as picture
 from plotting.command import main as plot
 from plotting.results import read_statistics
 from viscoplastic_contact import Program
+from viscoplastic_contact.study.effects_report import percent
 from viscoplastic_contact.study.runs import set_options
 from viscoplastic_contact.study.scene import Scene
 from viscoplastic_contact.study.variants import (
@@ -477,7 +478,11 @@ class Effects(TestCase):
 
     def test_of_two_bodies(self):
         """What it costs that one of them is rigid."""
-        with Case(VERIFICATION / "two_blocks_2d.prm", Study__Budget=1e5) as scene:
+        with Case(
+            VERIFICATION / "two_blocks_2d.prm",
+            Study__Budget=1e5,
+            Error_control__Quantity="contact_force_y",
+        ) as scene:
             process = scene.run("effects")
             self.assertEqual(process.returncode, 0, process.stderr)
             (effect,) = [
@@ -490,6 +495,10 @@ class Effects(TestCase):
             # u_y of the top is -p sum (1 - nu^2)/E
             self.assertClose(changes["point0"]["change"], 0.0048 / 0.0139, relative=0.1)
             self.assertNotIn("energy_norm", changes)
+            # Bilateral contact does not have the quantity, and needs no other.
+            failures = [effect["failure"] for effect in scene.about()["effects"]]
+            self.assertEqual(set(failures), {""})
+            self.assertEqual(percent(14362.59), "14 000 times")
 
     def test_what_cannot_be_left_out(self):
         """Steps that only backward Euler can take."""

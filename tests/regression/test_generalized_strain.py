@@ -3,9 +3,15 @@
 zz for the whole section, given or by its force, with closed forms, in plane strain
 and in 3D."""
 
+import sys
+
 import numpy as np
 
-from harness import TestCase, main, run
+from harness import SOURCE, TestCase, main, run
+
+sys.path.insert(0, str(SOURCE / "contrib"))
+
+from plotting import hysteresis
 
 E, NU = 2.0, 0.3
 SOLVERS = "direct", "multigrid", "algebraic multigrid"
@@ -72,6 +78,9 @@ class Patch(TestCase):
         self.assertLess(result["error_stress"][-1], 1e-11 * result["exact_stress"][-1])
         self.assertClose(result["axial_strain"][-1], strain[2], relative=1e-11)
         self.assertClose(result["axial_force"][-1], force, absolute=1e-13)
+        # Of the work on a unit of depth the part of the axial force.
+        loop = hysteresis.work(result["axial_strain"], result["axial_force"])
+        self.assertClose(loop, 0.5 * force * strain[2], relative=1e-11, absolute=1e-15)
         if not heat:
             work = 0.5 * stress @ strain
             self.assertClose(result["external_work"][-1], work, relative=1e-11)

@@ -62,6 +62,8 @@ class Handy(TestCase):
             (SI, 2, "force density", 2.5e4, "kN/m³", 1e3),
             (SI, 3, "velocity", 2e-5, "µm/s", 1e-6),
             (SI, 2, "energy norm", 0.5, "(J/m)$^{1/2}$", 1),
+            (SI, 2, "rate norm", 0.5, "(J/m/s)$^{1/2}$", 1),
+            (SI, 2, "root of section force", 0.5, "(N)$^{1/2}$", 1),
             # what follows from other units: MPa mm^2 = N, MPa mm = kN/m
             ({"length": "mm", "time": "s", "stress": "MPa"}, 3, "force", 20.0, "N", 1),
             ({"length": "mm", "time": "s", "stress": "MPa"}, 2, "force", 20.0, "kN/m", 1),
@@ -83,6 +85,7 @@ class Handy(TestCase):
     def test_days_in_words(self):
         words = [Unit(1.0, "day").value(number) for number in (1.0, 242.9)]
         self.assertEqual(words, ["1 day", "242.9 days"])
+        self.assertEqual(Unit(1e-18, "$10^{-18}$ mJ").value(0.0), "0 mJ")
         self.assertEqual(Unit(1.0, "day").label("time"), "time [day]")
 
     def test_slow_things_go_by_the_year(self):
@@ -137,6 +140,9 @@ class Handy(TestCase):
             self.assertIn("displacement of point 0", quantities.column("point0_x")[0])
             self.assertTrue(quantities.column("point1_stress_xx")[0].endswith("at crown"))
             self.assertEqual(history.label("reaction_3_x"), "roof, $x$")
+        with mock.patch.object(quantities, "of_interest", "point1_x"):
+            self.assertEqual(quantities.column("quantity_total")[1], "length")
+            self.assertEqual(quantities.column("estimator")[1], "root of length")
         self.assertEqual(quantities.column("t")[1], "time")
         self.assertEqual(quantities.field("stress_yy")[1], "stress")
         self.assertIn("tension positive", quantities.field("stress_yy")[0])
@@ -362,6 +368,17 @@ class Supported(TestCase):
         )
         with self.assertRaisesRegex(NoPicture, "nothing dissipates"):
             hysteresis.draw(results, options)
+        # Of a section in generalized plane strain: its force over its strain.
+        for name in "point0_x", "axial_strain", "axial_force", "viscous_dissipation":
+            statistics[name] = np.arange(3.0)
+        results.data, results.name, results.solution = {}, "bar", []
+        results.units, results.is_of_revolution = SI, lambda: False
+        figure = hysteresis.draw(results, options)
+        self.addCleanup(plt.close, figure)
+        axes = figure.axes[0]
+        words = axes.get_xlabel(), axes.get_ylabel()
+        self.assertEqual(words, (r"axial strain $\varepsilon_{zz}$", "axial force $N$ [N]"))
+        self.assertIn("= 2 J/m: work per unit depth", axes.get_title())
 
 
 if __name__ == "__main__":

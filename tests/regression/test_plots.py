@@ -45,7 +45,7 @@ from plotting.body import tiles
 from plotting.body_3d import VIEW, numbers_at
 from plotting.body_base import MANY, field
 from plotting.expression import evaluate
-from plotting.faces import lines, planes, state_runs
+from plotting.faces import lines, planes, required, state_runs
 from plotting.results import (
     NoPicture,
     Record,
@@ -316,6 +316,10 @@ class Numbers(TestCase):
         )
         self.assertEqual(field(body, "stress_xy").tolist(), [0.0, 0.0])
         self.assertEqual(field(body, "creep_rate").tolist(), [1e-11, 1e-11])
+        moved = np.ones((2, 2))
+        face = Body(displacement=moved, slip=1e-13 * moved, slip_rate=1e-12 * moved)
+        required(SimpleNamespace(contact=[0], face=lambda index: face), 0)
+        self.assertFalse(np.any([face["slip"], face["slip_rate"]]))
 
     def test_edges_once(self):
         """Cells have points of their own; those of an edge count as one."""
@@ -600,6 +604,27 @@ class Numbers(TestCase):
         tops = [line.get_ydata().max() for line in axes.get_lines()[:3]]
         self.assertClose(np.array(tops), np.array([3.0, 1.0, 4.0]), 1e-12)
         plt.close(figure)
+        # The tolerance of a quantity is a share of its largest value.
+        about = {"estimated_error_of_quantity": {"largest_value": 650.0}}
+        results = SimpleNamespace(
+            data={("Error control", "Tolerance"): "0.02"}, about=lambda: about
+        )
+        self.assertEqual(history.tolerance(results, history.QUANTITY), 13.0)
+        self.assertIsNone(history.tolerance(results, history.ERROR))
+        about.clear()
+        self.assertEqual(history.tolerance(results, history.ERROR), 2.0)
+
+    def test_labels_and_colors_of_panels(self):
+        """Labels are no longer than their panel; lines differ."""
+        names = "t", "slip_area", "contact_area", "contact_force_x"
+        columns = dict.fromkeys(names, np.arange(3.0))
+        figure, axes = plt.subplots()
+        self.addCleanup(plt.close, figure)
+        units, runs = Units({"length": "m", "stress": "Pa"}, 2), [("", columns)]
+        history.draw_panel(axes, history.AREA, ["slip_area", "contact_area"], runs, units)
+        self.assertEqual(len({line.get_color() for line in axes.get_lines()}), 2)
+        history.draw_panel(axes, history.PANELS[1], ["contact_force_x"], runs, units)
+        self.assertIn("\nexerted by the body\n[", axes.get_ylabel())
 
     def with_columns(self, **columns):
         """Results that have nothing but these columns."""

@@ -191,6 +191,10 @@ class Runs(TestCase):
         for sentence in self.results[3].info["remarks"]:
             self.assertIn(sentence, self.results[3].stdout)
         self.assertIn("mpirun -n 2 ", self.pages[3].text)
+        # Of laws only that of the material.
+        words = self.pages[2].words["again"]
+        found = [f"Material / {law}" in words for law in ("maxwell", "perzyna")]
+        self.assertEqual(found, [True, False])
 
     def test_curves_are_the_columns(self):
         for result, page in self.each():

@@ -220,9 +220,8 @@ class Results:
         """The same with all numbers in the units of the scene, also where the
         scene has written others."""
         result = dict(self.parameters)
-        if (self.directory / "run.json").exists():
-            for path, text in self.info.get("entries_with_units", {}).items():
-                result[tuple(path.split("/"))] = text
+        for path, text in self.about().get("entries_with_units", {}).items():
+            result[tuple(path.split("/"))] = text
         return result
 
     @property
@@ -234,20 +233,20 @@ class Results:
         except (OSError, ValueError) as error:
             raise UserError(f"{path} cannot be read: {error}") from error
 
+    def about(self):
+        """The same, or nothing where there is no run.json."""
+        return self.info if (self.directory / "run.json").exists() else {}
+
     @cached_property
     def units(self):
         """The units of length, time and stress that the scene declares, as
         {"length": "m", ...}; empty where it declares none."""
-        if not (self.directory / "run.json").exists():
-            return {}
-        return self.info.get("units") or {}
+        return self.about().get("units") or {}
 
     @cached_property
     def names(self):
         """What the scene calls its places, as {"boundary 3": "roof", ...}."""
-        if not (self.directory / "run.json").exists():
-            return {}
-        return self.info.get("names", {})
+        return self.about().get("names", {})
 
     def vector(self, prefix):
         """The columns prefix_x, prefix_y(, prefix_z) as one array (step, axis);

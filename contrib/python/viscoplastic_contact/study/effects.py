@@ -7,7 +7,7 @@ computed on finer ones. Runs are those of StudyRuns, each in a directory of its 
 the same command goes on after an interruption."""
 
 import time
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from math import inf, nan
 from typing import Optional
 
@@ -344,6 +344,12 @@ class EffectsStudy:
         if attempt.is_too_long:
             return None, None
         if not attempt.computed:
+            without = "Error control/Quantity="
+            if f"'{without[:-1]}'" in attempt.failure and without not in variant.overrides:
+                # Without the effect the scene does not have its quantity of interest.
+                self.runs.pop((variant.name, level), None)
+                other = replace(variant, overrides=[*variant.overrides, without])
+                return self.compare(other, level)
             result.failure = attempt.failure
             return result, None
         record, table = attempt.computed.record, attempt.computed.table

@@ -3,7 +3,7 @@
 simplification; effects.json; effects.md, the same for people."""
 
 import re
-from math import isfinite
+from math import isfinite, log10
 from pathlib import Path
 
 from .record import json_text
@@ -41,6 +41,9 @@ def names_of(study):
 
 
 def percent(value):
+    if 10.0 <= value < 1e9:
+        rounded = round(value, 1 - int(log10(value)))
+        return f"{rounded:,.0f} times".replace(",", " ")
     return f"{digits(100.0 * value, 2)} %" if isfinite(value) else "-"
 
 
@@ -106,7 +109,7 @@ def print_cells(cells):
     """A row of the table for the console: of effect, verdict, quantity, its change and
     error, and the time."""
     first, *more = lines_of(cells[0], 34)
-    row = f"  {first:34} {cells[1]:13} {cells[2]:20} {cells[3]:>7} {cells[4]:>7} "
+    row = f"  {first:34} {cells[1]:13} {cells[2]:20} {cells[3]:>12} {cells[4]:>7} "
     lines = [f"{row}{cells[5]:>12}", *(f"  {words}" for words in more)]
     return "".join(f"{line}\n" for line in lines)
 

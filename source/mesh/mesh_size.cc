@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <deal.II/base/exceptions.h>
 #include <deal.II/base/mpi.h>
+#include <deal.II/grid/grid_tools.h>
 
 #include <viscoplastic_contact/mesh/mesh_size.h>
 
@@ -95,4 +96,22 @@ namespace Viscoplastic
       Utilities::MPI::min(n_bytes <= n_possible ? 1 : 0, communicator) == 1;
     AssertThrow(is_possible, ExcMessage(message.str()));
   }
+
+
+
+  template <int dim>
+  double
+  body_diagonal(const Triangulation<dim> &triangulation)
+  {
+    const auto corners =
+      GridTools::compute_bounding_box(triangulation).get_boundary_points();
+    return corners.first.distance(corners.second);
+  }
+
+
+
+  template double
+  body_diagonal(const Triangulation<2> &);
+  template double
+  body_diagonal(const Triangulation<3> &);
 } // namespace Viscoplastic

@@ -94,11 +94,7 @@ namespace Viscoplastic
         }
     }
     if (is_initial)
-      {
-        balance.begin(quantities.stored_energy);
-        first_set_up_seconds =
-          timer.get_summary_data(TimerOutput::total_wall_time)["set-up"];
-      }
+      balance.begin(quantities.stored_energy);
     else
       balance.add_step({quantities.stored_energy,
                         quantities.external_work,
@@ -126,6 +122,7 @@ namespace Viscoplastic
     if (statistics)
       statistics->write(recorded);
     report_progress(step, quantities);
+    stopped_clock.reset();
   }
 
 
@@ -274,8 +271,6 @@ namespace Viscoplastic
   Recorder<dim>::resume(const State<dim> &state, const double seconds_before)
   {
     earlier_seconds = seconds_before;
-    first_set_up_seconds =
-      timer.get_summary_data(TimerOutput::total_wall_time)["set-up"];
     // For the progress this is the beginning.
     progress.report({0,
                      state.t,
@@ -292,8 +287,7 @@ namespace Viscoplastic
   std::map<std::string, double>
   Recorder<dim>::seconds() const
   {
-    auto result      = timer.get_summary_data(TimerOutput::total_wall_time);
-    result["set-up"] = first_set_up_seconds;
+    auto result = timer.get_summary_data(TimerOutput::total_wall_time);
     if (pilot_seconds > 0.)
       result["pilot run"] += pilot_seconds;
     return result;

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <deal.II/grid/grid_tools.h>
-
 #include <viscoplastic_contact/discretization/initial_state.h>
 #include <viscoplastic_contact/error/memory_bound.h>
+#include <viscoplastic_contact/mesh/mesh_size.h>
 #include <viscoplastic_contact/results/recorder.h>
 
 #include <algorithm>
@@ -16,30 +15,18 @@
 namespace Viscoplastic
 {
   template <int dim>
-  double
-  Recorder<dim>::body_size() const
-  {
-    // All ranks have the coarse mesh.
-    const auto corners =
-      GridTools::compute_bounding_box(
-        discretization->space.dof_handler.get_triangulation())
-        .get_boundary_points();
-    return corners.first.distance(corners.second);
-  }
-
-
-
-  template <int dim>
   void
   Recorder<dim>::judge(const AcceptedStep<dim>   &step,
                        const StepQuantities<dim> &quantities)
   {
     // The contact tolerance bounds the error in the energy norm, in which
     // nearly incompressible bodies hide large errors of reactions.
-    const double       defect    = balance_defect(quantities);
-    const std::string  time_unit = scene.unit(Quantity::time);
-    constexpr double   lost = 1e-3, far = 1e3;
-    const double       times = quantities.max_displacement / body_size();
+    const double      defect    = balance_defect(quantities);
+    const std::string time_unit = scene.unit(Quantity::time);
+    constexpr double  lost = 1e-3, far = 1e3;
+    const double      times =
+      quantities.max_displacement /
+      body_diagonal(discretization->space.dof_handler.get_triangulation());
     std::ostringstream loss;
     // Loads that are not rounding, of which rounding loses a part.
     if (const double missing = stable_norm(quantities.sum_of_forces);
@@ -209,8 +196,16 @@ namespace Viscoplastic
                .n_global_levels() > refinement.maximal_level)
       text << "it takes cells beyond 'Mesh refinement/Maximal level' = "
            << refinement.maximal_level << '.';
-    else
+    else if (budget->unavoidable > 0.)
       text << "finer meshes do not lower it.";
+    else if (budget->expected_size > size)
+      text << "the run on the first mesh has expected "
+           << budget->expected_size / size
+           << " times as large a solution: begin with more 'Geometry/Global "
+              "refinements'.";
+    else
+      text << "later meshes do not lower what earlier steps and the initial "
+              "data have left.";
     return text.str();
   }
 
@@ -280,7 +275,11 @@ namespace Viscoplastic
         result.push_back(text.str());
       }
 
-    if (budget && run.controlled_errors().relative() > budget->tolerance)
+    if (run.has_zero_quantity())
+      result.push_back("Warning: '" + scene.quantity->name +
+                       "' is zero throughout; no tolerance relative to it "
+                       "means anything.");
+    else if (budget && run.controlled_errors().relative() > budget->tolerance)
       result.push_back(remark_on_tolerance());
 
     for (const std::string &what : effects.that_never_acted(scene, run))
@@ -302,8 +301,9 @@ namespace Viscoplastic
         result.push_back(text.str());
       }
 
-    const double size   = body_size();
-    const bool   is_far = run.displacement.value > size;
+    const double size =
+      body_diagonal(discretization->space.dof_handler.get_triangulation());
+    const bool is_far = run.displacement.value > size;
     // Scenes without units are mathematics, where sizes mean nothing.
     if (is_far ||
         run.strain.value > (scene.parameters.units.are_declared() ? 0.1 : 1.))

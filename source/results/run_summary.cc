@@ -250,7 +250,8 @@ namespace Viscoplastic
               << ", and relative to its largest value:\n";
           print_parts(out, run, run.quantity_errors);
         }
-      if (run.tolerance && run.controlled_errors().relative() <= *run.tolerance)
+      if (run.tolerance && !run.has_zero_quantity() &&
+          run.controlled_errors().relative() <= *run.tolerance)
         {
           out << "The tolerance of " << 100. * *run.tolerance << " % has been ";
           if (run.jump_position)

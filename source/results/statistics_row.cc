@@ -310,7 +310,9 @@ namespace Viscoplastic
   void
   Recorder<dim>::add_seconds(StatisticsRow &row)
   {
-    const auto total = timer.get_summary_data(TimerOutput::total_wall_time);
+    const auto total = stopped_clock ?
+                         stopped_clock->first :
+                         timer.get_summary_data(TimerOutput::total_wall_time);
     for (const RunPhase &phase : run_phases)
       {
         if (!phase.is_in_statistics ||

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <deal.II/base/mpi.h>
-#include <deal.II/grid/grid_tools.h>
 
 #include <viscoplastic_contact/laws/strain.h>
+#include <viscoplastic_contact/mesh/mesh_size.h>
 #include <viscoplastic_contact/run/plausibility.h>
 #include <viscoplastic_contact/scene/sample_places.h>
 
@@ -69,20 +69,6 @@ namespace Viscoplastic
 
 
 
-    /// The diagonal of the box around the coarse mesh, which all ranks have.
-    template <int dim>
-    double
-    size_of_body(const Discretization<dim> &discretization)
-    {
-      const auto corners =
-        GridTools::compute_bounding_box(
-          discretization.space.dof_handler.get_triangulation())
-          .get_boundary_points();
-      return corners.first.distance(corners.second);
-    }
-
-
-
     /// Moduli of the cells of one material, and the times |sigma|/|G| of the
     /// cells in which its law flows at a stress.
     template <int dim>
@@ -98,16 +84,16 @@ namespace Viscoplastic
     template <int dim>
     std::vector<MaterialRanges<dim>>
     ranges_of_materials(const Discretization<dim> &discretization,
-                        const double               stress)
+                        const LargestStress       &stress)
     {
       const Scene<dim>                &scene = discretization.scene();
       std::vector<MaterialRanges<dim>> result;
       for (const auto &material : scene.materials)
         if (!material->is_absent)
           result.push_back({material.get(), {}, {}, {}});
-      const auto            now = discretization.laws.at(0.);
+      const auto            now = discretization.laws.at(stress.t);
       SymmetricTensor<2, 3> uniaxial;
-      uniaxial[0][0]    = stress;
+      uniaxial[0][0]    = stress.value;
       const auto &cells = discretization.space.cells;
       for (std::size_t c = 0; c < cells.size(); ++c)
         {
@@ -123,7 +109,7 @@ namespace Viscoplastic
                                  discretization.moduli(c);
           ranges.youngs_modulus.add(youngs_modulus(stiffness));
           ranges.poissons_ratio.add(stiffness.poissons_ratio());
-          if (const ViscoplasticLaw *law = now.law(c); law && stress > 0.)
+          if (const ViscoplasticLaw *law = now.law(c); law && stress.value > 0.)
             {
               const double rate = law
                                     ->rate(uniaxial,
@@ -186,13 +172,19 @@ namespace Viscoplastic
           times.push_back(scene.schedule.step(std::min(i, n)).t);
       }
 
+      /// @p when: the first time of it.
       double
-      largest(const Expression<dim> &datum) const
+      largest(const Expression<dim> &datum, double *const when = nullptr) const
       {
         double result = 0.;
         for (const double t : times)
           for (const double value : values_at(datum, places, t))
-            result = std::max(result, std::abs(value));
+            if (std::abs(value) > result)
+              {
+                result = std::abs(value);
+                if (when != nullptr)
+                  *when = t;
+              }
         return result;
       }
 
@@ -239,30 +231,37 @@ namespace Viscoplastic
     const Scene<dim> &scene = discretization.scene();
     const auto       &triangulation =
       discretization.space.dof_handler.get_triangulation();
-    const double size = size_of_body(discretization);
-    ValueRange   modulus;
-    for (const auto &ranges : ranges_of_materials(discretization, 0.))
+    const double size =
+      body_diagonal(discretization.space.dof_handler.get_triangulation());
+    ValueRange modulus;
+    for (const auto &ranges : ranges_of_materials<dim>(discretization, {}))
       modulus.add(ranges.youngs_modulus.least);
 
     const DataSampler<dim> body(places_in_body(triangulation), scene);
     LargestStress          load, bound;
-    const auto             add =
-      [&](const double value, const std::string &origin, const bool is_load) {
-        if (LargestStress &largest = is_load ? load : bound;
-            value > largest.value)
-          largest = {value, origin, is_load};
-      };
+    const auto             add = [&](const double       value,
+                         const std::string &origin,
+                         const bool         is_load,
+                         const double       t = 0.) {
+      if (LargestStress &largest = is_load ? load : bound;
+          value > largest.value)
+        largest = {value, origin, is_load, t};
+    };
     if (scene.initial_stress)
       add(body.largest(*scene.initial_stress, stress_components<dim>().size()),
           "the initial stress",
           true);
+    double hottest = 0.;
+    if (scene.temperature)
+      body.largest(scene.temperature->value, &hottest);
     for (const auto &material : scene.materials)
       if (const auto &alpha = material->thermal_expansion)
         add(modulus.least * body.largest(*alpha) *
               body.largest_deviation(scene.temperature->value,
                                      scene.temperature->reference),
             "Young's modulus times the thermal strain of " + material->name,
-            true);
+            true,
+            hottest);
     if (scene.body_force)
       add(body.largest(*scene.body_force, dim) * size,
           "the body force times the size of the body",
@@ -316,7 +315,7 @@ namespace Viscoplastic
                       time_unit = parameters.units.suffix(Quantity::time, dim);
     const auto entries          = parameters.entries_as_written();
     for (const auto &[material, modulus, ratio, time] :
-         ranges_of_materials(discretization, stress.value))
+         ranges_of_materials(discretization, stress))
       {
         out << material->name
             << (material->is_anisotropic() ? ": anisotropic, in the mean E = " :
@@ -365,7 +364,7 @@ namespace Viscoplastic
     const auto               with_unit = [&units](const double value) {
       return number(value) + units.suffix(Quantity::stress, dim);
     };
-    const auto ranges = ranges_of_materials(discretization, stress.value);
+    const auto ranges = ranges_of_materials(discretization, stress);
     for (const auto &one : ranges)
       if (const std::string path = one.material->section + "/Young's modulus";
           stress.is_load && !one.material->is_anisotropic() &&
@@ -374,7 +373,8 @@ namespace Viscoplastic
                          with_unit(one.youngs_modulus.largest) +
                          ", its default, beside " + with_unit(stress.value) +
                          ", " + stress.origin + ".");
-    const double size = size_of_body(discretization);
+    const double size =
+      body_diagonal(discretization.space.dof_handler.get_triangulation());
     for (const auto &[id, condition] : scene.boundary)
       if (condition.against && condition.is_unilateral())
         if (const double overlap =

@@ -12,6 +12,7 @@
 #include <viscoplastic_contact/run/state_carrier.h>
 #include <viscoplastic_contact/run/viscoplastic_contact.h>
 
+#include <algorithm>
 #include <iomanip>
 #include <sstream>
 
@@ -92,7 +93,16 @@ namespace Viscoplastic
           enter_next_stage();
         if (mesh_controller.is_due(accepted.state.n))
           adapt_mesh();
-        AcceptedStep<dim> step = time_stepper->next(accepted);
+        AcceptedStep<dim> step;
+        try
+          {
+            step = time_stepper->next(accepted);
+          }
+        catch (const StepFailure &)
+          {
+            record_initial_state();
+            throw;
+          }
         if (refine_for(step))
           {
             pass.has_changed_mesh |= accepted.state.n > 0;
@@ -100,6 +110,7 @@ namespace Viscoplastic
               return "";
             continue;
           }
+        record_initial_state();
         announcer.announce_solver(time_stepper->method().solver_name());
         recorder.record(accepted,
                         step,
@@ -127,7 +138,6 @@ namespace Viscoplastic
   {
     make_first_mesh<dim>(scene, triangulation, control, nullptr);
     begin_state();
-    record_initial_state();
     make_steps();
     recorder.check_sizes(/* at_end = */ true);
     return recorder.summary();
@@ -198,9 +208,11 @@ namespace Viscoplastic
   {
     begin_state();
     files->begin();
-    // First: the seconds that steps are expected to take begin with the record.
-    files->write({0, 0., 0., 0.});
-    record_initial_state();
+    // Another mesh may begin anew.
+    if (mesh_controller.repeats_steps())
+      recorder.stop_clock();
+    else
+      record_initial_state();
   }
 
 
@@ -209,10 +221,17 @@ namespace Viscoplastic
   void
   ViscoplasticContact<dim>::record_initial_state()
   {
+    if (accepted.state.n > 0 || has_recorded_initial_state)
+      return;
+    has_recorded_initial_state = true;
     AcceptedStep<dim> initial;
     initial.time_step = {0, 0., 0., 0.};
     initial.end       = accepted;
     initial.report    = initial_report;
+    time_stepper->estimate_quantity(initial.end);
+    // First: the seconds that steps are expected to take begin with the record.
+    if (files)
+      files->write(initial.time_step);
     recorder.record(accepted,
                     initial,
                     known_solution.errors(*discretization, accepted.state));
@@ -224,7 +243,10 @@ namespace Viscoplastic
   void
   ViscoplasticContact<dim>::set_up()
   {
-    TimerOutput::Scope scope(timer, "set-up");
+    // Later ones are part of the adaptation.
+    std::optional<TimerOutput::Scope> scope;
+    if (!discretization)
+      scope.emplace(timer, "set-up");
     distribute_nodes(fe, dof_handler);
     // The old one goes first: matrices and factors are what fills memory.
     accepted.is_solution = false;
@@ -305,7 +327,6 @@ namespace Viscoplastic
   void
   ViscoplasticContact<dim>::adapt_mesh()
   {
-    TimerOutput::Scope phase(timer, "adaptation");
     if (mesh_controller.mark(*discretization,
                              accepted,
                              recorder.summary().controlled_errors().size))
@@ -320,12 +341,12 @@ namespace Viscoplastic
   {
     if (!mesh_controller.repeats_steps())
       return false;
-    TimerOutput::Scope phase(timer, "adaptation");
     if (!mesh_controller.mark_for_step(
           *discretization,
           accepted,
           step.end,
-          recorder.summary().controlled_errors().size))
+          std::max(budget->size(accepted.errors),
+                   recorder.summary().controlled_errors().size)))
       {
         mesh_controller.accept_step();
         return false;
@@ -337,8 +358,10 @@ namespace Viscoplastic
       change_mesh();
     control.repeat();
     std::ostringstream text;
-    text << "  mesh " << std::setprecision(3) << mesh_controller.excess()
-         << " times too coarse for step " << step.time_step.n << ", refined to "
+    text << "  mesh " << std::setprecision(3);
+    if (mesh_controller.excess() >= 1.005)
+      text << mesh_controller.excess() << " times ";
+    text << "too coarse for step " << step.time_step.n << ", refined to "
          << triangulation.n_global_active_cells() << " cells\n";
     out << text.str() << std::flush;
     return true;
@@ -368,7 +391,8 @@ namespace Viscoplastic
   void
   ViscoplasticContact<dim>::change_mesh()
   {
-    MeshChange<dim> change(error_estimator.get(),
+    TimerOutput::Scope phase(timer, "adaptation");
+    MeshChange<dim>    change(error_estimator.get(),
                            *discretization,
                            accepted,
                            triangulation);
@@ -385,12 +409,13 @@ namespace Viscoplastic
   void
   ViscoplasticContact<dim>::begin_on_finer_mesh()
   {
-    const EnergiesOnMesh energies = energies_on_mesh(*discretization, accepted);
-    triangulation.execute_coarsening_and_refinement();
-    set_up();
+    {
+      TimerOutput::Scope phase(timer, "adaptation");
+      triangulation.execute_coarsening_and_refinement();
+      set_up();
+    }
     set_initial_state();
-    recorder.record_mesh_change(energies,
-                                energies_on_mesh(*discretization, accepted));
+    recorder.stop_clock();
   }
 
 

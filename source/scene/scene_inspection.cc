@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <deal.II/grid/grid_tools.h>
-
 #include <viscoplastic_contact/base/messages.h>
 #include <viscoplastic_contact/mesh/mesh_check.h>
 #include <viscoplastic_contact/mesh/mesh_ids.h>
 #include <viscoplastic_contact/mesh/mesh_pieces.h>
+#include <viscoplastic_contact/mesh/mesh_size.h>
 #include <viscoplastic_contact/mesh/plane_model.h>
 #include <viscoplastic_contact/scene/jump_in_time.h>
 #include <viscoplastic_contact/scene/output_check.h>
@@ -19,21 +18,6 @@
 
 namespace Viscoplastic
 {
-  namespace
-  {
-    /// The diagonal of the box around the vertices.
-    template <int dim>
-    double
-    mesh_size(const Triangulation<dim> &triangulation)
-    {
-      const auto corners =
-        GridTools::compute_bounding_box(triangulation).get_boundary_points();
-      return corners.first.distance(corners.second);
-    }
-  } // namespace
-
-
-
   template <int dim>
   void
   Scene<dim>::inspect(
@@ -65,7 +49,7 @@ namespace Viscoplastic
       {
         const bool is_elastic =
           materials.size() == 1 && !materials[0]->law && !has_thermal_strain();
-        exact_solution->set_body(mesh_size(triangulation),
+        exact_solution->set_body(body_diagonal(triangulation),
                                  is_elastic ? materials[0].get() : nullptr);
         for (auto &pair : boundary)
           pair.second.derive_data();

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <deal.II/base/utilities.h>
-#include <deal.II/grid/grid_tools.h>
 
 #include <viscoplastic_contact/base/messages.h>
 #include <viscoplastic_contact/base/spelling.h>
 #include <viscoplastic_contact/mesh/mesh_ids.h>
+#include <viscoplastic_contact/mesh/mesh_size.h>
 #include <viscoplastic_contact/scene/support.h>
 
 #include <algorithm>
@@ -174,10 +174,8 @@ namespace Viscoplastic
     std::vector<std::string> warnings;
     if (supports.empty())
       return warnings;
-    const auto vertices = boundaries_at_vertices(triangulation);
-    const auto corners =
-      GridTools::compute_bounding_box(triangulation).get_boundary_points();
-    const double size = corners.first.distance(corners.second);
+    const auto   vertices = boundaries_at_vertices(triangulation);
+    const double size     = body_diagonal(triangulation);
     for (Support<dim> &support : supports)
       {
         // Those that all of its nodes are on.

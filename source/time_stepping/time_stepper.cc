@@ -539,6 +539,22 @@ namespace Viscoplastic
 
 
   template <int dim>
+  void
+  TimeStepper<dim>::estimate_quantity(EvaluatedState<dim> &initial)
+  {
+    // There is no work before the first step.
+    if (!quantity_estimator || !initial.is_solution || scene.quantity->is_sum())
+      return;
+    TimerOutput::Scope phase(timer, "estimate");
+    quantity_estimator->assess(solver_of_elasticity().bulk(),
+                               nullptr,
+                               initial,
+                               initial);
+  }
+
+
+
+  template <int dim>
   double
   TimeStepper<dim>::tolerance(const EvaluatedState<dim> &accepted) const
   {

@@ -106,6 +106,38 @@ class ShrinkFit(TestCase):
             self.assertEqual(result["contact_area"][-1], 0)
             self.assertRegex(result.stdout, "met by the estimate alone: the mesh is too")
 
+    def test_tolerance_from_a_coarse_mesh(self):
+        """What the mesh misses of the arcs counts for its refinement, and the record is
+        of the mesh with which the first step has begun anew."""
+        for quantity, tolerance in ("contact_force_x", 0.02), ("", 0.05):
+            result = fit(
+                {
+                    "Geometry/Global refinements": 0,
+                    "Error control/Quantity": quantity,
+                    "Error control/Tolerance": tolerance,
+                }
+            )
+            self.assertIn("% has been kept", result.stdout)
+            self.assertNotRegex(result.stdout, r"mesh 1 times|\n  rest +-")
+            force = result["contact_force_x"]
+            self.assertClose(force[-1], RADII[1] * self.pressure, tolerance)
+            self.assertClose(force[0], force[-1], 1e-9)
+            self.assertEqual(result["cells"][0], result["cells"][-1])
+            self.assertEqual(result["adaptation_energy"][-1], 0)
+            if quantity:
+                total = result["quantity_total"]
+                self.assertGreater(total[0], 0)
+                self.assertClose(total[0], total[-1], 1e-6)
+
+    def test_tolerance_of_nothing(self):
+        nothing = {
+            "Error control/Quantity": "reaction_2_y",
+            "Error control/Tolerance": 0.05,
+        }
+        result = fit({"Geometry/Global refinements": 0, **nothing})
+        self.assertIn("'reaction_2_y' is zero throughout", result.stdout)
+        self.assertNotIn("has been kept", result.stdout)
+
     def test_error_bar_between_rings(self):
         """Of equal rings (spheres) under a pressure from outside, which are one: the
         face between them adds no error, and what it has is in the estimate."""

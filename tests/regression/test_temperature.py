@@ -3,6 +3,7 @@
 what laws, energies, estimates and changes of the mesh know of it."""
 
 import itertools
+import re
 
 import numpy as np
 
@@ -496,6 +497,15 @@ class Arrhenius(TestCase):
 
 class Pipe(TestCase):
     """prm/verification/hot_pipe.prm, in MPa, mm and h."""
+
+    def test_check(self):
+        """The law relaxes the thermal stress in the heat that makes it."""
+        with Job("hot_pipe") as job:
+            said = job.run("--check").stdout
+        line = re.search(r"within \|sigma\|/\|G\| = (\S+) to (\S+) h", said)
+        inner, outer = (723.15 + 100 * np.log(200 / r) / np.log(2) for r in (106, 194))
+        quotient = np.exp(110e3 / 8.314 * (1 / outer - 1 / inner))
+        self.assertClose(float(line[2]) / float(line[1]), quotient, relative=0.1)
 
     def test_creep(self):
         result = run("hot_pipe")

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
+#include <deal.II/grid/tria.h>
+
 #include <mpi.h>
 
 #include <string>
@@ -20,4 +22,10 @@ namespace Viscoplastic
                   const double       n_cells,
                   const std::string &cause,
                   const MPI_Comm     communicator);
+
+
+  /// That of the box around the vertices of the coarse mesh.
+  template <int dim>
+  double
+  body_diagonal(const dealii::Triangulation<dim> &triangulation);
 } // namespace Viscoplastic

@@ -42,6 +42,15 @@ namespace Viscoplastic
     void
     set_mesh(const Discretization<dim> &discretization);
 
+    /// The next record has the times of now, however late it comes.
+    void
+    stop_clock()
+    {
+      stopped_clock.reset(); // which elapsed() asks
+      stopped_clock.emplace(
+        timer.get_summary_data(TimerOutput::total_wall_time), elapsed());
+    }
+
     /// Write the rows into a table from now on; on rank 0. Without, the record
     /// is kept but not written.
     void
@@ -127,7 +136,8 @@ namespace Viscoplastic
     double
     elapsed() const
     {
-      return pilot_seconds + clock.wall_time();
+      return stopped_clock ? stopped_clock->second :
+                             pilot_seconds + clock.wall_time();
     }
 
     /// Wall time of the whole run, with the parts before restarts.
@@ -152,10 +162,6 @@ namespace Viscoplastic
     /// Why the tolerance of the run has been missed, and by how much.
     std::string
     remark_on_tolerance() const;
-
-    /// The diagonal of the box around the body. Collective.
-    double
-    body_size() const;
 
     /// Warn of what makes the numbers of a step doubtful, once each.
     void
@@ -237,9 +243,11 @@ namespace Viscoplastic
 
     std::unique_ptr<Statistics> statistics;
     Progress                    progress;
-    /// Wall time by phase a step ago, and of the first set-up.
+    /// Wall time by phase a step ago; and now, with the time in all, for a
+    /// record that comes later.
     std::map<std::string, double> last_seconds;
-    double                        first_set_up_seconds = 0.;
+    std::optional<std::pair<std::map<std::string, double>, double>>
+      stopped_clock;
     /// Seconds of the solves of this process, and what they would have taken
     /// without friction; see ContactReport.
     double solve_seconds = 0., plain_solve_seconds = 0.;

@@ -74,6 +74,15 @@ namespace Viscoplastic
       return quantity.empty() ? *errors : quantity_errors;
     }
 
+    /// Whether the tolerance is that of a quantity that has always been zero,
+    /// and not because curved bodies have missed each other.
+    bool
+    has_zero_quantity() const
+    {
+      return tolerance && !quantity.empty() && quantity_errors.size == 0. &&
+             !has_coarse_curves;
+    }
+
     Largest displacement, strain, von_mises, pressure, slip_area, slip_rate,
       capped_volume, utilization;
     /// The part of the faces in bilateral contact on which the foundation

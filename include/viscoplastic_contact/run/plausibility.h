@@ -19,6 +19,8 @@ namespace Viscoplastic
     std::string origin;
     /// Whether it is a load; not of friction bounds.
     bool is_load = false;
+    /// When laws meet it: a thermal stress in the greatest heat.
+    double t = 0.;
   };
 
   /**

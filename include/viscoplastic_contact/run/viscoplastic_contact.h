@@ -77,7 +77,7 @@ namespace Viscoplastic
       return accepted.state.t >= scene.schedule.end_time();
     }
 
-    /// Everything up to the initial state, and its record.
+    /// Everything up to the initial state.
     void
     begin();
     /// The initial state on the first mesh, and what has to be known before the
@@ -88,6 +88,8 @@ namespace Viscoplastic
     /// them.
     void
     set_initial_state();
+    /// Record and write it unless that has been done: at once, or, where the
+    /// first step may refine the mesh and begin anew, once it has been made.
     void
     record_initial_state();
 
@@ -154,6 +156,7 @@ namespace Viscoplastic
     /// The last state that will do, and the solve that has made the first one.
     EvaluatedState<dim> accepted;
     ContactReport       initial_report;
+    bool                has_recorded_initial_state = false;
 
     // What is said and kept.
     Console                     &console;

@@ -85,6 +85,11 @@ namespace Viscoplastic
     void
     estimate(EvaluatedState<dim> &evaluated) const;
 
+    /// The quantity of interest of initial data in equilibrium, and its error;
+    /// turns the indicators into those of the quantity. Collective.
+    void
+    estimate_quantity(EvaluatedState<dim> &initial);
+
     /// Whether steps of this scene ask for G at the state that they start from.
     bool
     needs_rate() const;

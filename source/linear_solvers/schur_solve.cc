@@ -198,9 +198,18 @@ namespace Viscoplastic
     bool
     has_negative_determinant() const override
     {
-      return face.n_dofs() <= small_face &&
-             DenseFactors({solver.schur_complement->matrix(), face, truncation})
-                 .matrix.determinant() < 0.;
+      if (face.n_dofs() > small_face)
+        return false;
+      try
+        {
+          return DenseFactors(
+                   {solver.schur_complement->matrix(), face, truncation})
+                   .matrix.determinant() < 0.;
+        }
+      catch (const LACExceptions::ExcSingular &)
+        {
+          return false;
+        }
     }
 
     SearchTerms

@@ -498,7 +498,7 @@ def draw_motion(axes, piece, supports, number, size, time):
     text = supports.units.unit("velocity", speed).value(speed, 3)
     # Right of the body, before the color bar, there is no room beside the arrow.
     beside = ((1, 0), (4, 0), "left", "center"), ((0, 1), (0, 5), "center", "bottom")
-    side, offset, ha, va = beside[normals[0, 0] > 0.5]
+    side, offset, ha, va = beside[int(normals[0, 0] > 0.5)]
     axes.annotate(
         text,
         middle + 0.5 * np.abs(arrow) * side,

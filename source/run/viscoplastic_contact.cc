@@ -93,16 +93,7 @@ namespace Viscoplastic
           enter_next_stage();
         if (mesh_controller.is_due(accepted.state.n))
           adapt_mesh();
-        AcceptedStep<dim> step;
-        try
-          {
-            step = time_stepper->next(accepted);
-          }
-        catch (const StepFailure &)
-          {
-            record_initial_state();
-            throw;
-          }
+        AcceptedStep<dim> step = next_step();
         if (refine_for(step))
           {
             pass.has_changed_mesh |= accepted.state.n > 0;
@@ -213,6 +204,23 @@ namespace Viscoplastic
       recorder.stop_clock();
     else
       record_initial_state();
+  }
+
+
+
+  template <int dim>
+  AcceptedStep<dim>
+  ViscoplasticContact<dim>::next_step()
+  {
+    try
+      {
+        return time_stepper->next(accepted);
+      }
+    catch (const StepFailure &)
+      {
+        record_initial_state();
+        throw;
+      }
   }
 
 

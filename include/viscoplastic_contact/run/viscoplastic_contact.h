@@ -93,6 +93,9 @@ namespace Viscoplastic
     void
     record_initial_state();
 
+    /// Make a step from the accepted state.
+    AcceptedStep<dim>
+    next_step();
     /// Make all steps up to the end. Returns a sentence if a signal has ended
     /// the run early.
     std::string

@@ -119,8 +119,8 @@ class Refused(TestCase):
         )
 
     def test_unknown_law(self):
-        self.refused("Material/Law' is 'burgers'", "one of elastic, maxwell",
-                     **{"Material/Law": "burgers"})
+        self.refused("Material/Law' is 'bingham'", "one of elastic, maxwell",
+                     **{"Material/Law": "bingham"})
 
     def test_misspelt_law(self):
         self.refused("did you mean 'maxwell'", **{"Material/Law": "Maxwel"})

@@ -343,6 +343,7 @@ POWERS_OF_WORDS = {
     "area": lambda d: (0, d - 1, 0),
     "volume": lambda d: (0, d, 0),
     "force": lambda d: (1, d - 1, 0),
+    "force of a section": lambda d: (1, 2, 0),
     "energy": lambda d: (1, d, 0),
     "energy^½": lambda d: (0.5, d / 2, 0),
     "(energy/time)^½": lambda d: (0.5, d / 2, -0.5),
@@ -416,6 +417,7 @@ class Scaled:
             "1/time": (0, 0, -1),
             "stress": (1, 0, 0),
             "1/stress": (-1, 0, 0),
+            "force": (1, 2, 0),  # of a whole section
             "stress times time": (1, 0, 1),
             "force per volume": (1, -1, 0),
             "stress/length": (1, -1, 0),
@@ -530,6 +532,7 @@ SHORT = (
             "Output/Point fields": "",
         },
     ),
+    ("crowned_floor_2d", {"Output/Point fields": ""}),
     ("corner_coulomb_90_2d", {}),
     ("corner_tresca_150_2d", {}),
     ("conveyor_3d", WALL),

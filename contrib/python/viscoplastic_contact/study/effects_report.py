@@ -109,7 +109,7 @@ def print_cells(cells):
     """A row of the table for the console: of effect, verdict, quantity, its change and
     error, and the time."""
     first, *more = lines_of(cells[0], 34)
-    row = f"  {first:34} {cells[1]:13} {cells[2]:20} {cells[3]:>12} {cells[4]:>7} "
+    row = f"  {first:34} {cells[1]:13} {cells[2]:20} {cells[3]:>7} {cells[4]:>7} "
     lines = [f"{row}{cells[5]:>12}", *(f"  {words}" for words in more)]
     return "".join(f"{line}\n" for line in lines)
 

@@ -39,9 +39,8 @@ class EffectVariant:
 
     @property
     def changes_stiffness(self):
-        """Displacements have another energy norm then."""
-        moduli = "/Young's modulus=", "/Poisson's ratio=", "/Voigt matrix="
-        return any(name in entry for entry in self.overrides for name in moduli)
+        """Whether energy norms are those of bodies that cannot be compared."""
+        return self.instead == "rigid"
 
     def excludes(self, other):
         """Whether both cannot be left out at once, or one contains the other."""

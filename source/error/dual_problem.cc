@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <deal.II/base/quadrature_lib.h>
+#include <deal.II/dofs/dof_tools.h>
 #include <deal.II/fe/fe_values.h>
 
 #include <viscoplastic_contact/contact/contact_points.h>
@@ -80,6 +81,12 @@ namespace Viscoplastic
     const Tensor<1, dim>        direction =
       Point<dim>::unit_vector(quantity.component);
     space.to_cartesian(prescribed(), w);
+    std::map<const BoundaryCondition<dim> *, IndexSet> planes; // of symmetry
+    for (const auto &[id, condition] : space.scene.boundary)
+      if (condition.role == BoundaryRole::symmetry)
+        planes[&condition] = DoFTools::extract_boundary_dofs(space.dof_handler,
+                                                             ComponentMask(),
+                                                             {id});
     FEFaceValues<dim> face_values(space.mapping,
                                   space.dof_handler.get_fe(),
                                   QGauss<dim - 1>(2),
@@ -115,9 +122,14 @@ namespace Viscoplastic
               for (unsigned int d = 0; d < dim; ++d)
                 at_node[d] = w(cell->vertex_dof_index(v, d));
               Tensor<1, dim> excess = held(condition, at_node, nu) - own;
-              // Friction beside a plane of symmetry is zero.
-              if (quantity.is_reaction() && condition.has_friction())
+              // What slides is known, see held_friction(); and shear beside a
+              // plane of symmetry is zero.
+              if (condition.has_friction() && condition.foundation_motion)
                 excess -= tangential(excess, nu);
+              for (const auto &[plane, nodes] : planes)
+                if (plane->id != id &&
+                    nodes.is_element(cell->vertex_dof_index(v, 0)))
+                  excess -= (excess * plane->normal) * plane->normal;
               // Normals of curved pieces are not those of their faces.
               if (excess.norm() < 0.1 ||
                   face_values.shape_value(v * dim, 0) < 1e-10)

@@ -573,11 +573,13 @@ class EachKind(TestCase):
             self.assertLess(quotients.max(), largest)
 
     def test_in_creep(self):
-        # measured: 1.3 to 1.6, 2.9 to 4.4, 0.57 to 1, 1.3 to 2.3; by residuals alone
+        # measured: 1.3 to 1.6, 2.9 to 4.4, up to 4, 1.3 to 2.3; the reaction meets the
+        # head, whose corner is known and counts twice, against a reference that has a
+        # quarter of it (without it 0.57 to 1, by chance); by residuals alone
         # the work of friction, 1.4 to 1.8, had 0.013 at the end
         self.check("contact_force_y", 0.7, 3)
         self.check("friction_force_x", 0.7, 5)
-        self.check("reaction_0_x", 0.5, 3)
+        self.check("reaction_0_x", 0.5, 5)
         self.check("point0_x", 0.7, 3)
         self.check("friction_dissipation", 0.7, 3)
 

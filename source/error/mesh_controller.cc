@@ -221,15 +221,11 @@ namespace Viscoplastic
       return 1.;
     // Quantities behave like squares of the energy norm. Where contributions
     // happen to cancel, none of them may become larger. What is settled stays
-    // as it is on any mesh. What the mesh misses of curved faces is the rest of
-    // the estimate.
+    // as it is on any mesh.
     constexpr double safety  = QuantityEstimator<dim>::safety;
     const double     settled = safety * std::abs(quantity.settled_space),
                  open        = std::max(0.1 * allowed, allowed - settled),
                  of_mesh =
-                   quantity.space -
-                   std::max(safety * std::abs(quantity.space_correction),
-                            quantity.space_of_creep) +
                    std::max(safety * std::abs(quantity.space_correction -
                                               quantity.settled_space),
                             quantity.space_of_creep) +

@@ -339,7 +339,6 @@ namespace Viscoplastic
     const Vector<double> held =
       held_friction(d, state, quantity, dual.cartesian);
     boundary += size_of(held);
-    estimate.of_boundary = boundary;
     if (Vector<double> &indicators = end.space_estimate.squared_indicators;
         indicators.size() > 0)
       for (unsigned int c = 0; c < indicators.size(); ++c)
@@ -354,11 +353,12 @@ namespace Viscoplastic
         if (indicators.size() > 0 && geometry > 0.)
           indicators.add(dual.norm / geometry, of_geometry);
       }
+    estimate.of_boundary      = boundary + geometry * estimate.dual_norm;
     estimate.space_correction = estimate.settled_space + mesh;
     estimate.time_correction  = estimate.settled_time + time;
     estimate.space = std::max(safety * std::abs(estimate.space_correction),
                               estimate.space_of_creep) +
-                     geometry * estimate.dual_norm + boundary;
+                     estimate.of_boundary;
     // A part of all forces changes forces by that part, also where the dual
     // solution is zero, as where all points slip.
     const auto of_swing = [&](const double energy_norm, const double share) {

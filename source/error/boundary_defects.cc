@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <deal.II/base/mpi.h>
 #include <deal.II/base/quadrature_lib.h>
 #include <deal.II/fe/fe_values.h>
+#include <deal.II/fe/mapping_q.h>
 
 #include <viscoplastic_contact/error/boundary_defects.h>
 
@@ -9,94 +11,84 @@
 namespace Viscoplastic
 {
   template <int dim>
-  Vector<double>
-  missing_sides(const Discretization<dim> &discretization,
-                const State<dim>          &state,
-                const DistributedVector   &ghosted_w)
+  BoundaryDefects<dim>::BoundaryDefects(
+    const Discretization<dim> &discretization)
+    : discretization(discretization)
   {
-    const AdmissibleSpace<dim> &space        = discretization.space;
-    const StressSpace<dim>     &stress_space = discretization.stress_space;
-    const Scene<dim>           &scene        = space.scene;
-    // Of the displacement in the plane, which is what a pressure works on.
-    const unsigned int n_directions =
-      scene.plane_model() == PlaneModel::axisymmetric ? 3 : dim;
-    FEFaceValues<dim>                  face_values(space.mapping,
-                                  space.dof_handler.get_fe(),
-                                  QGauss<dim - 1>(2),
-                                  update_JxW_values | update_normal_vectors |
-                                    update_quadrature_points);
-    std::vector<SymmetricTensor<2, 3>> strains(stress_space.n_samples),
-      of_w(stress_space.n_samples);
-    Vector<double> result(
-      space.dof_handler.get_triangulation().n_active_cells());
-    for (std::size_t c = 0; c < space.cells.size(); ++c)
-      {
-        const auto &cell = space.cells[c];
-        if (!cell->at_boundary() || !scene.is_present(cell->material_id()))
-          continue;
-        bool is_strained = false;
-        for (const unsigned int f : cell->face_indices())
-          {
-            const auto face = cell->face(f);
-            if (!face->at_boundary())
-              continue;
-            const Tensor<1, dim> delta =
-              face->center(/* respect_manifold = */ true) - face->center();
-            if (delta.norm() < 1e-10 * face->diameter())
-              continue;
-            face_values.reinit(cell, f);
-            double volume = 0.;
-            for (const unsigned int q : face_values.quadrature_point_indices())
-              volume += 2. / 3. * face_values.JxW(q) *
-                        (delta * face_values.normal_vector(q));
-            if (!is_strained)
-              {
-                stress_space.strains(c, state.u.begin(), strains.data());
-                stress_space.strains(c, ghosted_w.begin(), of_w.data());
-                is_strained = true;
-              }
-            const auto  &condition = scene.boundary.at(face->boundary_id());
-            const double pressure =
-              condition.role == BoundaryRole::traction && condition.pressure ?
-                condition.pressure->value(face->center(), state.t) :
-                0.;
-            for (unsigned int s = 0; s < stress_space.n_samples; ++s)
-              {
-                double divergence = 0.;
-                for (unsigned int d = 0; d < n_directions; ++d)
-                  divergence += of_w[s][d][d];
-                const SymmetricTensor<2, 3> stress =
-                  stress_space.moduli(c).stress(strains[s]) +
-                  (state.z.empty() ? SymmetricTensor<2, 3>() :
-                                     state.z[c * stress_space.n_samples + s]);
-                result[cell->active_cell_index()] -=
-                  volume / stress_space.n_samples *
-                  (stress * of_w[s] + pressure * divergence);
-              }
-          }
-      }
-    return result;
+    find_sides();
+    if (discretization.face)
+      find_held_nodes();
+    const MPI_Comm communicator = discretization.space.communicator;
+    any_sides =
+      Utilities::MPI::max<unsigned int>(side_points.size(), communicator) > 0;
+    any_held_nodes =
+      Utilities::MPI::max<unsigned int>(held_nodes.size(), communicator) > 0;
   }
 
 
 
   template <int dim>
-  Vector<double>
-  held_friction(const Discretization<dim> &discretization,
-                const State<dim>          &state,
-                const QuantityOfInterest  &quantity,
-                const DistributedVector   &ghosted_w)
+  void
+  BoundaryDefects<dim>::find_sides()
   {
-    using Kind                        = QuantityOfInterest::Kind;
     const AdmissibleSpace<dim> &space = discretization.space;
-    const Scene<dim>           &scene = space.scene;
-    Vector<double>              result(
-      space.dof_handler.get_triangulation().n_active_cells());
-    if (!discretization.face)
-      return result;
-    const DistributedVector density =
-      discretization.face->density(state.contact);
-    FEFaceValues<dim> face_values(space.mapping,
+    const FiniteElement<dim>   &fe    = space.dof_handler.get_fe();
+    const QGauss<dim - 1>       quadrature(2);
+    const MappingQ<dim>         of_manifold(3);
+    FEFaceValues<dim>           straight(space.mapping,
+                               fe,
+                               quadrature,
+                               update_values | update_gradients |
+                                 update_JxW_values | update_normal_vectors |
+                                 update_quadrature_points);
+    FEFaceValues<dim>           curved(of_manifold,
+                             fe,
+                             quadrature,
+                             update_JxW_values | update_normal_vectors |
+                               update_quadrature_points);
+    for (std::size_t c = 0; c < space.cells.size(); ++c)
+      for (const unsigned int f : space.cells[c]->face_indices())
+        {
+          const auto &cell = space.cells[c];
+          const auto  face = cell->face(f);
+          if (!face->at_boundary() ||
+              !space.scene.is_present(cell->material_id()) ||
+              face->center().distance(face->center(true)) <
+                1e-10 * face->diameter())
+            continue;
+          straight.reinit(cell, f);
+          curved.reinit(cell, f);
+          for (const unsigned int q : straight.quadrature_point_indices())
+            {
+              SidePoint point{
+                c,
+                &space.scene.boundary.at(face->boundary_id()),
+                {{straight.quadrature_point(q), curved.quadrature_point(q)}},
+                {{straight.normal_vector(q), curved.normal_vector(q)}},
+                {{straight.JxW(q),
+                  curved.JxW(q) * extent(space.scene.plane_model(),
+                                         curved.quadrature_point(q))}},
+                {},
+                {}};
+              for (const unsigned int v : cell->vertex_indices())
+                {
+                  point.shape[v]    = straight.shape_value(v * dim, q);
+                  point.gradient[v] = straight.shape_grad(v * dim, q);
+                }
+              side_points.push_back(point);
+            }
+        }
+  }
+
+
+
+  template <int dim>
+  void
+  BoundaryDefects<dim>::find_held_nodes()
+  {
+    const AdmissibleSpace<dim> &space   = discretization.space;
+    const auto                 &hanging = space.cartesian_hanging_nodes();
+    FEFaceValues<dim>           face_values(space.mapping,
                                   space.dof_handler.get_fe(),
                                   QGauss<dim - 1>(2),
                                   update_values | update_JxW_values |
@@ -107,25 +99,38 @@ namespace Viscoplastic
           const auto face = cell->face(f);
           if (!face->at_boundary())
             continue;
-          const auto &condition = scene.boundary.at(face->boundary_id());
+          const BoundaryCondition<dim> &condition =
+            space.scene.boundary.at(face->boundary_id());
           if (!condition.has_friction() || condition.against)
             continue;
+          face_values.reinit(cell, f);
+          const auto add = [&](const types::global_dof_index dof,
+                               const Point<dim>             &position,
+                               const double                  area) {
+            const NodalFrame<dim> &frame = space.frame_at(dof);
+            Tensor<2, dim>         held =
+              unit_symmetric_tensor<dim>() -
+              outer_product(condition.normal, condition.normal);
+            for (const FrictionPlane<dim> &plane : frame.planes)
+              if (const auto &ids = plane.boundary_ids;
+                  std::find(ids.begin(), ids.end(), condition.id) != ids.end())
+                for (unsigned int i = 0; i < plane.n_tangents; ++i)
+                  {
+                    const Tensor<1, dim> tangent =
+                      frame.directions * plane.map[i];
+                    held -=
+                      outer_product(tangent, tangent) / tangent.norm_square();
+                  }
+            if (held.norm() > 1e-6)
+              held_nodes.push_back({cell->active_cell_index(),
+                                    space.relevant.index_within_set(dof),
+                                    position,
+                                    area,
+                                    &condition,
+                                    held});
+          };
           for (const unsigned int v : cell->vertex_indices())
             {
-              const auto dof = cell->vertex_dof_index(v, 0);
-              if (space.cartesian_hanging_nodes().is_constrained(dof))
-                continue;
-              const auto &planes = space.frame_at(dof).planes;
-              if (std::any_of(planes.begin(),
-                              planes.end(),
-                              [&](const FrictionPlane<dim> &plane) {
-                                const auto &ids = plane.boundary_ids;
-                                return std::find(ids.begin(),
-                                                 ids.end(),
-                                                 condition.id) != ids.end();
-                              }))
-                continue;
-              face_values.reinit(cell, f);
               double area = 0.;
               for (const unsigned int q :
                    face_values.quadrature_point_indices())
@@ -133,58 +138,127 @@ namespace Viscoplastic
                   face_values.shape_value(v * dim, q) * face_values.JxW(q);
               if (area < 1e-12 * face->measure())
                 continue; // not a vertex of the face
-              Tensor<1, dim>    slip, w, force;
-              const std::size_t first = space.relevant.index_within_set(dof);
-              for (unsigned int d = 0; d < dim; ++d)
-                {
-                  slip[d]  = state.u.begin()[first + d];
-                  w[d]     = ghosted_w.begin()[first + d];
-                  force[d] = density.begin()[first + d];
-                }
-              const auto tangential = [&](const Tensor<1, dim> &a) {
-                return a - (a * condition.normal) * condition.normal;
-              };
-              const Tensor<1, dim> sliding =
-                condition.sliding(cell->vertex(v), state.t);
-              slip              = tangential(slip);
-              const double size = slip.norm() + sliding.norm();
-              slip -= sliding;
-              if (!(slip.norm() > 1e-9 * size))
-                continue;
-              const double missing = condition.bound(cell->vertex(v), state.t) *
-                                     area *
-                                     (condition.has_computed_pressure() ?
-                                        std::abs(force * condition.normal) :
-                                        1.);
-              result[cell->active_cell_index()] +=
-                missing * (quantity.is_sum() ?
-                             slip.norm() :
-                           quantity.kind == Kind::friction_force ?
-                             std::abs(slip[quantity.component]) / slip.norm() :
-                             tangential(w).norm());
+              const auto dof = cell->vertex_dof_index(v, 0);
+              if (!hanging.is_constrained(dof))
+                add(dof, cell->vertex(v), area);
+              else
+                for (const auto &[master, weight] :
+                     *hanging.get_constraint_entries(dof))
+                  add(master, cell->vertex(v), weight * area);
             }
         }
+  }
+
+
+
+  template <int dim>
+  Vector<double>
+  BoundaryDefects<dim>::missing_sides(const State<dim>        &state,
+                                      const DistributedVector &ghosted_w) const
+  {
+    if (!any_sides)
+      return {};
+    const AdmissibleSpace<dim> &space        = discretization.space;
+    const StressSpace<dim>     &stress_space = discretization.stress_space;
+    const auto                 &b            = space.scene.body_force;
+    const unsigned int          n            = stress_space.n_samples;
+    std::vector<SymmetricTensor<2, 3>> strains(n), of_w(n);
+    double                             power = 0.; // sigma : eps(w)
+    std::size_t                        last  = numbers::invalid_size_type;
+    Vector<double>                     result(
+      space.dof_handler.get_triangulation().n_active_cells());
+    for (const SidePoint &point : side_points)
+      {
+        const auto &cell = space.cells[point.cell];
+        if (point.cell != last)
+          {
+            last = point.cell;
+            stress_space.strains(last, state.u.begin(), strains.data());
+            stress_space.strains(last, ghosted_w.begin(), of_w.data());
+            power = 0.;
+            for (unsigned int s = 0; s < n; ++s)
+              {
+                SymmetricTensor<2, 3> stress =
+                  stress_space.moduli(last).stress(strains[s]);
+                if (!state.z.empty())
+                  stress += state.z[last * n + s];
+                power += stress * of_w[s] / n;
+              }
+          }
+        const Tensor<1, dim> delta = point.x[1] - point.x[0];
+        Tensor<1, dim>       w, change;
+        for (const unsigned int v : cell->vertex_indices())
+          {
+            const std::size_t first =
+              space.relevant.index_within_set(cell->vertex_dof_index(v, 0));
+            for (unsigned int d = 0; d < dim; ++d)
+              {
+                const double value = ghosted_w.begin()[first + d];
+                w[d] += value * point.shape[v];
+                change[d] += value * (point.gradient[v] * delta);
+              }
+          }
+        double &part = result[cell->active_cell_index()];
+        part += (delta * point.normal[0]) * point.weight[0] *
+                ((b ? b->vector(point.x[0], state.t) * w : 0.) - power);
+        if (point.condition->carries_load())
+          for (const unsigned int i : {0, 1})
+            part +=
+              (i == 1 ? 1. : -1.) * point.weight[i] *
+              (point.condition->load(point.x[i], point.normal[i], state.t) *
+               (w + i * change));
+      }
     return result;
   }
 
 
 
-  template Vector<double>
-  missing_sides<2>(const Discretization<2> &,
-                   const State<2> &,
-                   const DistributedVector &);
-  template Vector<double>
-  missing_sides<3>(const Discretization<3> &,
-                   const State<3> &,
-                   const DistributedVector &);
-  template Vector<double>
-  held_friction<2>(const Discretization<2> &,
-                   const State<2> &,
-                   const QuantityOfInterest &,
-                   const DistributedVector &);
-  template Vector<double>
-  held_friction<3>(const Discretization<3> &,
-                   const State<3> &,
-                   const QuantityOfInterest &,
-                   const DistributedVector &);
+  template <int dim>
+  Vector<double>
+  BoundaryDefects<dim>::held_friction(const State<dim>         &state,
+                                      const QuantityOfInterest &quantity,
+                                      const DistributedVector  &ghosted_w) const
+  {
+    if (!any_held_nodes)
+      return {};
+    const AdmissibleSpace<dim> &space = discretization.space;
+    const DistributedVector     density =
+      discretization.face->density(state.contact);
+    Vector<double> result(
+      space.dof_handler.get_triangulation().n_active_cells());
+    for (const HeldNode &node : held_nodes)
+      {
+        const auto at_node = [&node](const DistributedVector &field) {
+          Tensor<1, dim> value;
+          for (unsigned int d = 0; d < dim; ++d)
+            value[d] = field.begin()[node.first + d];
+          return value;
+        };
+        const BoundaryCondition<dim> &condition = *node.condition;
+        const Tensor<1, dim>          sliding =
+                               condition.sliding(node.position, state.t),
+                             moved =
+                               tangential(at_node(state.u), condition.normal),
+                             slip = moved - sliding, held = node.held * slip;
+        if (!(held.norm() > 1e-9 * (moved.norm() + sliding.norm())))
+          continue;
+        double missing = condition.bound(node.position, state.t) * node.area *
+                         held.norm() / slip.norm();
+        if (condition.has_computed_pressure())
+          missing *= std::abs(at_node(density) * condition.normal);
+        if (quantity.is_sum())
+          missing *= held.norm();
+        else if (quantity.kind == QuantityOfInterest::Kind::friction_force)
+          missing *= std::abs(held[quantity.component]) / held.norm();
+        else
+          missing *= (node.held * at_node(ghosted_w)).norm();
+        result[node.active_cell] += missing;
+      }
+    return result;
+  }
+
+
+
+  template class BoundaryDefects<2>;
+  template class BoundaryDefects<3>;
 } // namespace Viscoplastic

@@ -122,7 +122,7 @@ namespace Viscoplastic
               for (unsigned int d = 0; d < dim; ++d)
                 at_node[d] = w(cell->vertex_dof_index(v, d));
               Tensor<1, dim> excess = held(condition, at_node, nu) - own;
-              // What slides is known, see held_friction(); and shear beside a
+              // What slides is known, see BoundaryDefects; and shear beside a
               // plane of symmetry is zero.
               if (condition.has_friction() && condition.foundation_motion)
                 excess -= tangential(excess, nu);

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <deal.II/base/mpi.h>
 
-#include <viscoplastic_contact/error/boundary_defects.h>
 #include <viscoplastic_contact/error/error_estimator.h>
 #include <viscoplastic_contact/error/quantity_estimator.h>
 
@@ -55,6 +54,7 @@ namespace Viscoplastic
     , space_estimator(space_estimator)
     , solver_of_tangents(solver_of_tangents)
     , dual_problem(discretization, *discretization.scene().quantity)
+    , boundary_defects(discretization)
   {
     if (is_of_creep(discretization.scene()))
       tangent = std::make_unique<TangentMatrix<dim>>(discretization.laws,
@@ -125,7 +125,7 @@ namespace Viscoplastic
       };
     Vector<double> products =
       space_estimator.multiply_recovered(state, dual, linearization);
-    sides = missing_sides(discretization, state, dual.cartesian);
+    sides = boundary_defects.missing_sides(state, dual.cartesian);
     // The longer step moves the body more by the same force.
     if (discretization.scene().quantity->is_force())
       {
@@ -255,6 +255,8 @@ namespace Viscoplastic
     const DualSolution<dim>         dual =
       dual_problem.solve(solver, state.contact, linearized);
     const auto size_of = [&](const Vector<double> &parts) {
+      if (parts.size() == 0) // on all ranks
+        return 0.;
       const double here[] = {parts.mean_value() * parts.size(),
                              parts.l1_norm()};
       double       sums[2];
@@ -263,8 +265,9 @@ namespace Viscoplastic
                           ArrayView<double>(sums));
       return std::max(std::abs(sums[0]), least_share * sums[1]);
     };
-    double         mesh = 0., time = 0., boundary = 0.;
-    Vector<double> sides;
+    Vector<double> sides =
+      boundary_defects.missing_sides(state, dual.cartesian);
+    double mesh = 0., time = 0., boundary = size_of(sides);
     if (dual.norm > 0. || dual_problem.pieces_meet())
       {
         const double memory = tangent && end.rate ?
@@ -286,8 +289,6 @@ namespace Viscoplastic
           Utilities::MPI::sum(sums, d.space.communicator, sums);
         };
         add_up();
-        sides    = missing_sides(d, state, dual.cartesian);
-        boundary = size_of(sides);
         // Forces forget what has crept, but nothing is known of the signs then.
         estimate.space_of_creep = 0.;
         if (quantity.is_force() && errors.energy_norm > 0.)
@@ -336,13 +337,14 @@ namespace Viscoplastic
         if (end.space_estimate.squared_indicators.size() > 0)
           end.space_estimate.squared_indicators = std::move(indicators);
       }
-    const Vector<double> held =
-      held_friction(d, state, quantity, dual.cartesian);
+    Vector<double> held =
+      boundary_defects.held_friction(state, quantity, dual.cartesian);
     boundary += size_of(held);
-    if (Vector<double> &indicators = end.space_estimate.squared_indicators;
-        indicators.size() > 0)
-      for (unsigned int c = 0; c < indicators.size(); ++c)
-        indicators[c] += held[c] + (sides.size() > 0 ? std::abs(sides[c]) : 0.);
+    for (const Vector<double> *const parts : {&sides, &held})
+      if (Vector<double> &indicators = end.space_estimate.squared_indicators;
+          indicators.size() > 0 && parts->size() > 0)
+        for (unsigned int c = 0; c < indicators.size(); ++c)
+          indicators[c] += std::abs((*parts)[c]);
     const Vector<double> &of_geometry = end.space_estimate.geometry;
     double                geometry    = 0.;
     if (of_geometry.size() > 0) // on all ranks

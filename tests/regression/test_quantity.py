@@ -605,6 +605,107 @@ class EachKind(TestCase):
         self.check("friction_dissipation", 0.7, 3, **held)
 
 
+class OnTheBoundary(TestCase):
+    """What a mesh misses on the boundary is known, though no residual feels it."""
+
+    def compare(self, column, exact, ranks=1, band=(0.97, 1.05), **overrides):
+        coarse = {"Output/Fields every": 0, "Time/Phases": "1: 2", **overrides}
+        result = run("boundary", {**coarse, **of(column)}, ranks, text="")
+        error = exact - abs(result[column][-1])
+        self.assertGreater(error, 1e-3 * exact)
+        self.assertClose(result["quantity_space"][-1] / error, np.mean(band), 0,
+                         np.ptp(band) / 2, column)
+
+    def test_held_beside_a_belt(self):
+        """The node at the end of the belt has no friction point."""
+        for dim, arguments, force in (
+            (2, "10, 5 : 0, 0 : 100, 50 : true", 40),
+            (3, "8, 4, 4 : 0, 0, 0 : 100, 50, 50 : true", 2000),
+        ):
+            free = "; free" * (dim - 1)
+            bottom, top = f"Boundary {2 * dim - 2}", f"Boundary {2 * dim - 1}"
+            belt = {
+                "Dimension": dim,
+                "Geometry/Arguments": arguments,
+                "Material/Young's modulus": 200,
+                "Boundary 0/Role": "free",
+                "Boundary 1/Role": "displacement",
+                "Boundary 1/Displacement": "0" + free,
+                "Boundary 2/Role": "symmetry",
+                "Boundary 3/Role": "free",
+                f"{bottom}/Role": "contact",
+                f"{bottom}/Contact law": "unilateral",
+                f"{bottom}/Friction law": "coulomb",
+                f"{bottom}/Friction coefficient": 0.25,
+                f"{bottom}/Foundation motion": "20*t" + "; 0" * (dim - 1),
+                f"{top}/Role": "traction",
+                f"{top}/Pressure": "1.6*t",
+            }
+            hanging = {"Geometry/Boundary refinements": "1: 1"}
+            with self.subTest(dim=dim):
+                self.compare("friction_force_x", force, **belt)
+                for ranks in 2, 3:
+                    self.compare("reaction_1_x", force, ranks, **belt, **hanging)
+                # bounds at the ends of two steps
+                work = force * 20 * 0.75
+                self.compare("friction_dissipation", work, 1, (1, 1.3), **belt)
+
+    def test_straight_sides(self):
+        """Shells: what statics says of sections and forces holds for the body, not
+        for cells. Their dual solutions are uniform."""
+        area = np.pi / 4
+        shell = {
+            "Geometry/Generator": "quarter_hyper_shell",
+            "Geometry/Global refinements": 1,
+            "Material/Young's modulus": 1000,
+            "Boundary 0/Role": "free",
+            "Boundary 1/Role": "free",
+            "Boundary 2/Role": "symmetry",
+            "Boundary 3/Role": "symmetry",
+        }
+        plane = {**shell, "Geometry/Arguments": "0, 0 : 50 : 80 : 2 : true"}
+        solid = {
+            **shell,
+            "Dimension": 3,
+            "Geometry/Arguments": "0, 0, 0 : 50 : 80 : 0 : true",
+            "Boundary 4/Role": "symmetry",
+        }
+        self.compare(
+            "axial_force",
+            area * (80**2 - 50**2),
+            **plane,
+            **{
+                "Geometry/Plane model": "generalized strain",
+                "Loads/Axial strain": "1e-3*t",
+            },
+        )
+        self.compare(
+            "reaction_3_y",
+            2 * np.pi / 3 * (80**3 - 50**3),
+            **plane,
+            **{
+                "Geometry/Plane model": "axisymmetric",
+                "Loads/Body force": "0; -t",
+            },
+        )
+        self.compare(
+            "reaction_2_x",
+            10 * area * 50**2,
+            2,
+            **{**solid, "Boundary 0/Role": "traction", "Boundary 0/Pressure": "10*t"},
+        )
+        self.compare(
+            "reaction_4_z",
+            0.5 * np.pi * 80**2,
+            3,
+            **{
+                **solid,
+                "Boundary 1/Role": "traction",
+                "Boundary 1/Traction": "0; 0; -t",
+            },
+        )
+
+
 class Refused(TestCase):
     def check(self, sentence, **overrides):
         result = run("slab", overrides, check=False)

@@ -2,40 +2,87 @@
 #pragma once
 
 #include <viscoplastic_contact/discretization/discretization.h>
-#include <viscoplastic_contact/error/dual_problem.h>
 #include <viscoplastic_contact/scene/quantity_of_interest.h>
+
+#include <array>
+#include <vector>
 
 namespace Viscoplastic
 {
   /**
-   * What straight sides of cells do to a quantity where the body is curved, by
-   * active cell: between a face and the manifold, at a distance delta from its
-   * middle, there is the volume 2/3 delta |face|, in which the equations miss
-   *
-   *     sigma : eps(w) + p div w,
-   *
-   * the latter of a pressure p, which follows the surface. Their sum is the
-   * error to leading order. Of meshes from files, zero: they are the geometry.
-   * Collective.
+   * What a mesh does to a quantity of interest on the boundary, which no
+   * residual knows. Made once a mesh; costs nothing where there is none of it.
    */
   template <int dim>
-  Vector<double>
-  missing_sides(const Discretization<dim> &discretization,
-                const State<dim>          &state,
-                const DistributedVector   &ghosted_w);
+  class BoundaryDefects
+  {
+  public:
+    /// @p discretization stays in use. Collective.
+    explicit BoundaryDefects(const Discretization<dim> &discretization);
 
-  /**
-   * The friction that a quantity misses where nodes on Gamma_3 are held in its
-   * direction by other conditions, by active cell: such nodes have no friction
-   * point, and what their part of the face carries goes to what holds them. It
-   * is the bound there, for the work of friction times the slip; zero where the
-   * foundation does not slide relative to the node, as at planes of symmetry.
-   * At contact between two bodies it is not known, and zero. Collective.
-   */
-  template <int dim>
-  Vector<double>
-  held_friction(const Discretization<dim> &discretization,
-                const State<dim>          &state,
-                const QuantityOfInterest  &quantity,
-                const DistributedVector   &ghosted_w);
+    /**
+     * What straight sides of cells do where the body is curved, by active cell,
+     * with the dual solution w: over the volume between the sides and the
+     * manifold, and with the loads f where they belong, the equations miss
+     *
+     *     int b . w - sigma : eps(w)  +  int_curved f . w - int_straight f . w.
+     *
+     * Their sum is the error to leading order. Of meshes from files it is zero:
+     * they are the geometry. Empty where no side is curved.
+     */
+    Vector<double>
+    missing_sides(const State<dim>        &state,
+                  const DistributedVector &ghosted_w) const;
+
+    /**
+     * The friction that is missing where other conditions hold nodes on Gamma_3
+     * along a foundation that slides beneath them, by active cell: these have
+     * no friction point in that direction, and what holds them carries their
+     * part of the face. It is the bound times the part of the slip in that
+     * direction, for the work of friction times the slip. At contact between
+     * two bodies it is not known, and zero. Empty where no node is held.
+     * Collective.
+     */
+    Vector<double>
+    held_friction(const State<dim>         &state,
+                  const QuantityOfInterest &quantity,
+                  const DistributedVector  &ghosted_w) const;
+
+  private:
+    /// A quadrature point of a straight side, and where it is on the manifold.
+    struct SidePoint
+    {
+      std::size_t                   cell; // of the owned ones
+      const BoundaryCondition<dim> *condition;
+      std::array<Point<dim>, 2>     x; // straight, curved
+      std::array<Tensor<1, dim>, 2> normal;
+      std::array<double, 2>         weight;
+      /// The shape functions of the vertices and their gradients.
+      std::array<double, (1u << dim)>         shape;
+      std::array<Tensor<1, dim>, (1u << dim)> gradient;
+    };
+
+    /// The part of a face that a held node stands for.
+    struct HeldNode
+    {
+      unsigned int                  active_cell;
+      std::size_t                   first; // entry among the relevant ones
+      Point<dim>                    position;
+      double                        area;
+      const BoundaryCondition<dim> *condition;
+      /// Projects on the tangential directions in which it is held.
+      Tensor<2, dim> held;
+    };
+
+    void
+    find_sides();
+    void
+    find_held_nodes();
+
+    const Discretization<dim> &discretization;
+    std::vector<SidePoint>     side_points;
+    std::vector<HeldNode>      held_nodes;
+    /// Whether any rank has them.
+    bool any_sides, any_held_nodes;
+  };
 } // namespace Viscoplastic

@@ -77,7 +77,7 @@ namespace Viscoplastic
     double unsigned_space = 0.;
     /// What creep has made of the error of the mesh, without signs.
     double space_of_creep = 0.;
-    /// What the boundary adds, see missing_sides() and held_friction().
+    /// What the boundary adds, see BoundaryDefects.
     double of_boundary = 0.;
     /// Of slip that turns and that comes to rest within steps, summed.
     double turning = 0., resting = 0.;

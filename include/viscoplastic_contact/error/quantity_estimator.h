@@ -3,6 +3,7 @@
 
 #include <viscoplastic_contact/contact/contact_event.h>
 #include <viscoplastic_contact/discretization/tangent_matrix.h>
+#include <viscoplastic_contact/error/boundary_defects.h>
 #include <viscoplastic_contact/error/dual_problem.h>
 #include <viscoplastic_contact/error/evaluated_state.h>
 
@@ -39,7 +40,7 @@ namespace Viscoplastic
    *   The larger of this and of a(e_u, e_w) counts. T is t under steady loads,
    *   less while they grow, and has no bound where stress relaxes: C and what
    *   forces remember fade as it does.
-   * - the boundary: missing_sides() and held_friction(), which R does not know.
+   * - the boundary: BoundaryDefects, which R does not know.
    * - time steps: R_z(w) = -(D, eps(w)) with the sum D of the defects of all
    *   steps (see ErrorEstimator).
    * - slip that turns or comes to rest within a step is wrong by defects d_c
@@ -114,8 +115,8 @@ namespace Viscoplastic
                      QuantityEstimate        &estimate) const;
 
     /// What the errors of rates have done to the quantity by the end of a
-    /// step, by active cell, with ErrorEstimate::creep_time; and
-    /// missing_sides() of the dual solution of creep. Collective.
+    /// step, by active cell, with ErrorEstimate::creep_time; and the missing
+    /// sides with the dual solution of creep. Collective.
     Vector<double>
     products_of_creep(const State<dim> &state,
                       const double      relaxation_rate,
@@ -133,6 +134,7 @@ namespace Viscoplastic
     const SpaceEstimator<dim> &space_estimator;
     const TangentSolver        solver_of_tangents;
     const DualProblem<dim>     dual_problem;
+    const BoundaryDefects<dim> boundary_defects;
     /// Of creep; null if nothing creeps.
     std::unique_ptr<TangentMatrix<dim>> tangent;
   };

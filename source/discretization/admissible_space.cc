@@ -174,7 +174,9 @@ namespace Viscoplastic
     , axial(scene.is_generalized() ?
               std::make_optional<std::size_t>(relevant.n_elements() - dim) :
               std::nullopt)
-    , axial_length(size_of_coarse_mesh(dof_handler.get_triangulation()))
+    , axial_length(scene.is_generalized() ?
+                     size_of_coarse_mesh(dof_handler.get_triangulation()) :
+                     1.)
     , cells(owned_cells(dof_handler))
     , first_owned(owned.n_elements() > 0 ?
                     relevant.index_within_set(owned.nth_index_in_set(0)) :

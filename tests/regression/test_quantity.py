@@ -644,6 +644,9 @@ class OnTheBoundary(TestCase):
             hanging = {"Geometry/Boundary refinements": "1: 1"}
             with self.subTest(dim=dim):
                 self.compare("friction_force_x", force, **belt)
+                kept = run("belt", {**belt, **of("friction_force_x", 0.005)}, text="")
+                self.assertIn("has been kept", kept.stdout)
+                self.assertClose(kept["friction_force_x"][-1], -force, 0.005)
                 for ranks in 2, 3:
                     self.compare("reaction_1_x", force, ranks, **belt, **hanging)
                 # bounds at the ends of two steps

@@ -81,7 +81,7 @@ namespace Viscoplastic
     /// a node of no mesh, behind all others; the second one is no unknown. The
     /// last rank owns it, and it is relevant to all.
     const std::optional<std::size_t> axial;
-    /// The size of the body, the same on all its meshes.
+    /// There, the size of the body, the same on all its meshes.
     const double axial_length;
 
     /// The owned cells, in the order of owned_cells(): that of all data that

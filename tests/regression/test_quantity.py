@@ -92,6 +92,33 @@ class Estimated(TestCase):
         self.assertClose(time, at_one(coarse) - at_one(steps), 0.3)
         self.assertClose(at_one(coarse, "quantity_correction"), mesh - time, 1e-6)
 
+    def test_of_long_steps_under_a_growing_load(self):
+        """A power of the stress is not linear within steps of backward Euler."""
+        bar = {
+            "Geometry/Arguments": "1, 1 : 0, 0 : 1, 1 : true",
+            "Material/Young's modulus": 100,
+            "Material/Law": "norton",
+            "Material/norton/Rate factor": 0.01,
+            "Material/norton/Exponent": 5,
+            "Material/norton/Stress cap": 100,
+            **{f"Boundary {id}/Role": "symmetry" for id in (0, 2)},
+            "Boundary 1/Role": "free",
+            "Boundary 3/Role": "traction",
+            "Boundary 3/Traction": "0; 4*t",
+            "Time/Scheme": "backward Euler",
+            "Time/Phases": "1: 4",
+            "Output/Fields every": 0,
+            "Output/Points": "1, 1",
+        }
+        column = "point0_y"
+        result = run("bar", of(column, **bar), text="")
+        fine = run("bar", {**bar, "Time/Phases": "1: 800"}, text="")
+        error = np.abs(fine[column][::200] - result[column])[1:]
+        quotients = result["quantity_time"][1:] / error
+        # measured: 0.98 to 1.02; as if G was linear in steps, 0.61 to 0.83
+        self.assertGreater(quotients.min(), 0.95)
+        self.assertLess(quotients.max(), 1.05)
+
     def test_in_space(self):
         """A clamped block without friction, linear in every respect."""
         scene = {

@@ -15,8 +15,9 @@ namespace Viscoplastic
    *
    *     first k_n (G_n - G_{n-1}) + second k_n^3 G''.
    *
-   * Schemes of first order have first != 0 and need no more; those of second
-   * order have first = 0.
+   * Schemes of first order have first != 0 and need no more, but for long steps
+   * of backward Euler under laws that are not linear, whose integral of G is
+   * Simpson's. Those of second order have first = 0.
    */
   struct TimeDefect
   {

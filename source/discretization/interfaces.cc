@@ -77,7 +77,7 @@ namespace Viscoplastic
     DistributedVector relative = owned_vector();
     for (std::size_t i = 0; i < owned.n_elements(); ++i)
       relative.begin()[i] = ghosted.begin()[first_owned + i];
-    add_opposite(-1., ghosted, relative);
+    add_opposite(-1., ghosted, relative, /* also_where_held = */ true);
     distribute_hanging_nodes(relative);
     ghosted = relative;
   }
@@ -88,7 +88,8 @@ namespace Viscoplastic
   void
   AdmissibleSpace<dim>::add_opposite(const double             factor,
                                      const DistributedVector &ghosted,
-                                     DistributedVector       &v) const
+                                     DistributedVector       &v,
+                                     const bool also_where_held) const
   {
     for (const Coupling &coupling : couplings)
       if (coupling.node >= first_owned &&
@@ -98,7 +99,7 @@ namespace Viscoplastic
           for (const auto &[other, weight] : coupling.others)
             for (unsigned int d = 0; d < dim; ++d)
               u[d] += weight * ghosted.begin()[other + d];
-          u = factor * (coupling.projector * u);
+          u = factor * (also_where_held ? u : coupling.projector * u);
           for (unsigned int d = 0; d < dim; ++d)
             v.begin()[coupling.node - first_owned + d] += u[d];
         }
@@ -176,7 +177,8 @@ namespace Viscoplastic
   template void
   AdmissibleSpace<2>::add_opposite(const double,
                                    const DistributedVector &,
-                                   DistributedVector &) const;
+                                   DistributedVector &,
+                                   const bool) const;
   template bool
   AdmissibleSpace<2>::is_coupled(
     const std::vector<types::global_dof_index> &) const;
@@ -190,7 +192,8 @@ namespace Viscoplastic
   template void
   AdmissibleSpace<3>::add_opposite(const double,
                                    const DistributedVector &,
-                                   DistributedVector &) const;
+                                   DistributedVector &,
+                                   const bool) const;
   template bool
   AdmissibleSpace<3>::is_coupled(
     const std::vector<types::global_dof_index> &) const;

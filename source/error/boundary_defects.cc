@@ -101,16 +101,19 @@ namespace Viscoplastic
             continue;
           const BoundaryCondition<dim> &condition =
             space.scene.boundary.at(face->boundary_id());
-          if (!condition.has_friction() || condition.against)
+          if (!condition.has_friction())
             continue;
           face_values.reinit(cell, f);
           const auto add = [&](const types::global_dof_index dof,
                                const Point<dim>             &position,
                                const double                  area) {
-            const NodalFrame<dim> &frame = space.frame_at(dof);
+            if (condition.against &&
+                space.mortar_rows.at(condition.id).count(dof / dim) == 0)
+              return; // nothing opposite
+            const NodalFrame<dim> &frame  = space.frame_at(dof);
+            const Tensor<1, dim>   normal = space.normal_at(dof, condition);
             Tensor<2, dim>         held =
-              unit_symmetric_tensor<dim>() -
-              outer_product(condition.normal, condition.normal);
+              unit_symmetric_tensor<dim>() - outer_product(normal, normal);
             for (const FrictionPlane<dim> &plane : frame.planes)
               if (const auto &ids = plane.boundary_ids;
                   std::find(ids.begin(), ids.end(), condition.id) != ids.end())
@@ -127,6 +130,7 @@ namespace Viscoplastic
                                     position,
                                     area,
                                     &condition,
+                                    normal,
                                     held});
           };
           for (const unsigned int v : cell->vertex_indices())
@@ -224,6 +228,10 @@ namespace Viscoplastic
     const AdmissibleSpace<dim> &space = discretization.space;
     const DistributedVector     density =
       discretization.face->density(state.contact);
+    // Between two bodies slip is relative, and both feel the friction.
+    DistributedVector u = state.u, w = ghosted_w;
+    space.make_relative(u);
+    space.make_relative(w);
     Vector<double> result(
       space.dof_handler.get_triangulation().n_active_cells());
     for (const HeldNode &node : held_nodes)
@@ -237,21 +245,20 @@ namespace Viscoplastic
         const BoundaryCondition<dim> &condition = *node.condition;
         const Tensor<1, dim>          sliding =
                                condition.sliding(node.position, state.t),
-                             moved =
-                               tangential(at_node(state.u), condition.normal),
+                             moved = tangential(at_node(u), node.normal),
                              slip = moved - sliding, held = node.held * slip;
         if (!(held.norm() > 1e-9 * (moved.norm() + sliding.norm())))
           continue;
         double missing = condition.bound(node.position, state.t) * node.area *
                          held.norm() / slip.norm();
         if (condition.has_computed_pressure())
-          missing *= std::abs(at_node(density) * condition.normal);
+          missing *= std::abs(at_node(density) * node.normal);
         if (quantity.is_sum())
           missing *= held.norm();
         else if (quantity.kind == QuantityOfInterest::Kind::friction_force)
           missing *= std::abs(held[quantity.component]) / held.norm();
         else
-          missing *= (node.held * at_node(ghosted_w)).norm();
+          missing *= (node.held * at_node(w)).norm();
         result[node.active_cell] += missing;
       }
     return result;

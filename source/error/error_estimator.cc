@@ -132,8 +132,8 @@ namespace Viscoplastic
   TimeDefect
   time_defect(const TimeScheme scheme)
   {
-    // Of Heun's that of the trapezoidal rule; what the predictor adds where G
-    // depends on it is left out.
+    // Of Heun's that of the trapezoidal rule; add_defect() knows what it has
+    // integrated instead of that.
     return scheme == TimeScheme::forward_euler  ? TimeDefect{0.5, 0.} :
            scheme == TimeScheme::backward_euler ? TimeDefect{-0.5, 0.} :
                                                   TimeDefect{0., -1. / 12.};
@@ -282,13 +282,28 @@ namespace Viscoplastic
     state.remembered_error = accepted.remembered_error;
     state.history_error    = accepted.history_error;
     state.history_slope.resize(accepted.history_slope.size());
-    // What a step has left out of z or history, to leading order, whose rate
-    // has changed; and the slope of that.
-    const auto defect_of = [&](const SymmetricTensor<2, 3> &change,
+    // What a step has left out of z or history, to leading order, whose rates
+    // at both ends are given; and the slope of that.
+    const bool         has_predictor = defect.second != 0.;
+    IrreversibleStress unflowed;
+    if (has_predictor)
+      {
+        unflowed = accepted.z;
+        if (laws.thermal)
+          laws.thermal->follow(accepted.t, state.t, unflowed);
+      }
+    const auto defect_of = [&](const SymmetricTensor<2, 3> &old_rate,
+                               const SymmetricTensor<2, 3> &rate,
+                               const SymmetricTensor<2, 3> &increment,
                                const std::size_t            i,
                                const IrreversibleStress    &old_slopes,
                                IrreversibleStress          &slopes) {
-      SymmetricTensor<2, 3> step = defect.first * k * change;
+      const SymmetricTensor<2, 3> change = rate - old_rate;
+      SymmetricTensor<2, 3>       step   = defect.first * k * change;
+      // Heun's method takes the rate of its prediction for that of the end. At
+      // the limit of stability nothing relaxes, and no rate changes.
+      if (has_predictor)
+        step += 0.5 * k * (old_rate + rate) - increment;
       if (is_second)
         slopes[i] = change / k;
       // There is no second derivative before the second step.
@@ -340,7 +355,13 @@ namespace Viscoplastic
             const SymmetricTensor<2, 3> change =
               end.rate->rate[i] - accepted_rate.rate[i];
             SymmetricTensor<2, 3> all =
-              defect_of(change, i, accepted.rate_slope, state.rate_slope);
+              defect_of(accepted_rate.rate[i],
+                        end.rate->rate[i],
+                        has_predictor ? state.z[i] - unflowed[i] :
+                                        SymmetricTensor<2, 3>(),
+                        i,
+                        accepted.rate_slope,
+                        state.rate_slope);
             if (!half_way.empty())
               all -=
                 k / 3. *
@@ -358,25 +379,21 @@ namespace Viscoplastic
                 error_relaxation(*law, stress, strain, k, stiffness, point);
             if (remembers)
               {
-                const SymmetricTensor<2, 3> change_of_history =
-                  end.rate->history_rate[i] - accepted_rate.history_rate[i];
-                // By k^2 alpha''/2 Heun's predictor misses the history of the
-                // end, half of which counts.
-                const SymmetricTensor<2, 3> predicted =
-                  -3. * defect.second * k * change_of_history;
-                carried =
-                  carry_history_error(*law,
-                                      state.history_error[i] + predicted,
-                                      stress,
-                                      strain,
-                                      k,
-                                      stiffness,
-                                      point);
-                state.history_error[i] = carried.history - predicted +
-                                         defect_of(change_of_history,
-                                                   i,
-                                                   accepted.history_slope,
-                                                   state.history_slope);
+                carried = carry_history_error(*law,
+                                              state.history_error[i],
+                                              stress,
+                                              strain,
+                                              k,
+                                              stiffness,
+                                              point);
+                state.history_error[i] =
+                  carried.history +
+                  defect_of(accepted_rate.history_rate[i],
+                            end.rate->history_rate[i],
+                            state.history[i] - accepted.history[i],
+                            i,
+                            accepted.history_slope,
+                            state.history_slope);
                 LawPoint after = point;
                 after.history  = &state.history[i];
                 if (fades)

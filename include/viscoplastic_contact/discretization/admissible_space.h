@@ -305,11 +305,13 @@ namespace Viscoplastic
     make_hanging_nodes_in_frames();
     void
     make_couplings();
-    /// v := v + factor C Q u at owned nodes, with u Cartesian.
+    /// v := v + factor C Q u at owned nodes, with u Cartesian; with Q u alone
+    /// also in directions in which other conditions hold the node.
     void
     add_opposite(const double             factor,
                  const DistributedVector &ghosted_u,
-                 DistributedVector       &v) const;
+                 DistributedVector       &v,
+                 const bool               also_where_held = false) const;
     /// Whether a node of a cell has something opposite.
     bool
     is_coupled(const std::vector<types::global_dof_index> &dofs) const;

@@ -39,9 +39,8 @@ namespace Viscoplastic
      * along a foundation that slides beneath them, by active cell: these have
      * no friction point in that direction, and what holds them carries their
      * part of the face. It is the bound times the part of the slip in that
-     * direction, for the work of friction times the slip. At contact between
-     * two bodies it is not known, and zero. Empty where no node is held.
-     * Collective.
+     * direction, for the work of friction times the slip. Empty where no node
+     * is held. Collective.
      */
     Vector<double>
     held_friction(const State<dim>         &state,
@@ -70,6 +69,7 @@ namespace Viscoplastic
       Point<dim>                    position;
       double                        area;
       const BoundaryCondition<dim> *condition;
+      Tensor<1, dim>                normal;
       /// Projects on the tangential directions in which it is held.
       Tensor<2, dim> held;
     };

@@ -340,7 +340,8 @@ namespace Viscoplastic
             add_up();
             estimate.space_of_creep =
               std::max(estimate.space_of_creep, least_share * sums[2]);
-            if (std::abs(of_residuals) > std::abs(sums[0]))
+            // Of elastic bodies the sign is that of residuals.
+            if (!creeps || std::abs(of_residuals) > std::abs(sums[0]))
               {
                 indicators = products.of_both;
                 add_up();

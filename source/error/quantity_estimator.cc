@@ -41,6 +41,24 @@ namespace Viscoplastic
              std::sqrt(
                Utilities::MPI::max(largest, stress_space.space.communicator));
     }
+
+
+
+    /// a(e_u, e_w) by active cell, of recovered strains.
+    template <int dim>
+    Vector<double>
+    elastic_products(const StressSpace<dim>    &stress_space,
+                     const SpaceEstimator<dim> &space_estimator,
+                     const State<dim>          &state,
+                     const DualSolution<dim>   &dual)
+    {
+      std::vector<SymmetricTensor<4, 3>> moduli;
+      for (std::size_t c = 0; c < stress_space.n_cells(); ++c)
+        moduli.insert(moduli.end(),
+                      stress_space.n_samples,
+                      stress_space.moduli(c).tensor());
+      return space_estimator.multiply_recovered(state, dual, {moduli, 1., {}});
+    }
   } // namespace
 
 
@@ -294,26 +312,36 @@ namespace Viscoplastic
         if (quantity.is_force() && errors.energy_norm > 0.)
           estimate.space_of_creep =
             std::min(1., errors.creep_path / errors.energy_norm) * sums[2];
-        if (tangent && end.rate &&
-            end.rate->relaxation_rate * errors.creep_time > elastic)
+        const bool creeps =
+          tangent && end.rate &&
+          end.rate->relaxation_rate * errors.creep_time > elastic;
+        // Residuals do not know what mean dilatation leaves out of pressures.
+        if (creeps || (d.mean_dilatation && dual.norm > 0.))
           {
-            const double   of_residuals = sums[0];
-            Vector<double> crept;
-            indicators = products_of_creep(state,
-                                           end.rate->relaxation_rate,
-                                           errors.creep_time,
-                                           linearized,
-                                           crept);
-            if (const double size = size_of(crept); size > boundary)
+            const double of_residuals = sums[0];
+            if (creeps)
               {
-                boundary = size;
-                sides    = std::move(crept);
+                Vector<double> crept;
+                indicators = products_of_creep(state,
+                                               end.rate->relaxation_rate,
+                                               errors.creep_time,
+                                               linearized,
+                                               crept);
+                if (const double size = size_of(crept); size > boundary)
+                  {
+                    boundary = size;
+                    sides    = std::move(crept);
+                  }
               }
+            else
+              indicators =
+                elastic_products(d.stress_space, space_estimator, state, dual);
             dual_problem.add_at_meetings(state, indicators);
             add_up();
             estimate.space_of_creep =
               std::max(estimate.space_of_creep, least_share * sums[2]);
-            if (std::abs(of_residuals) > std::abs(sums[0]))
+            // Of elastic bodies the sign is that of residuals.
+            if (!creeps || std::abs(of_residuals) > std::abs(sums[0]))
               {
                 indicators = products.of_both;
                 add_up();

@@ -455,6 +455,31 @@ class BrakePadPressed(TestCase):
         self.assertClose(place[1], 0.05, absolute=1e-6)
 
 
+class BallCreep(TestCase):
+    def test_sinks_in(self):
+        """Hertz's ball with the creep compliance in the place of 1/mu: its area
+        only grows until it is relieved (Lee and Radok)."""
+        result = run(
+            "ball_creep_2d",
+            {"Output/Fields every": 0, "Error control/Error bar": "false"},
+        )
+        self.check_identities(result, tolerance=COUPLED)
+        mu, K, R, force = 900 / 2.92, 900 / 3 / 0.08, 10, 10
+        for t in (1, 60, 600, 3600):
+            row = result.row(t)
+            self.assertClose(result["contact_force_y"][row], -force, relative=1e-6)
+            shear = 1 / (1 / mu + t / 5e6 + (1 - np.exp(-t * 300 / 9e4)) / 300)
+            plate = 4 * shear * (3 * K + shear) / (3 * K + 4 * shear)
+            modulus = 1 / (1 / plate + 0.91 / 210e3)
+            a = (0.75 * force * R / modulus) ** (1 / 3)
+            # measured: at most 0.029 and 0.052, of cells of an eighth of it
+            self.assertClose(result["point0_y"][row], -(a**2) / R, relative=0.04)
+            peak = 1.5 * force / np.pi / a**2
+            self.assertClose(result["max_pressure"][row], peak, relative=0.07)
+        up = result["point0_y"][[result.row(t) for t in (3600, 3601, 7200)]]
+        self.assertGreater(np.diff(up).min(), 0.25 * -up[0])
+
+
 class BallOnRubber(TestCase):
     SHORT, LONG, TIME, NU = 10, 3, 0.1, 0.49
     RADIUS, SPEED = 20, 60

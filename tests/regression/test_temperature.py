@@ -4,6 +4,7 @@ what laws, energies, estimates and changes of the mesh know of it."""
 
 import itertools
 import re
+import tempfile
 
 import numpy as np
 
@@ -575,6 +576,14 @@ class Times(TestCase):
         self.assertIn("Temperature/Value", result.stdout + result.stderr)
         work = abs(result["thermal_work"]).max()
         self.assertLess(abs(result["energy_balance_defect"]).max(), 1e-6 * work)
+        with tempfile.NamedTemporaryFile("w", suffix=".csv") as table:
+            table.write("t,oven\n0,300\n0.37,400\n0.61,400\n1,320\n")
+            table.flush()
+            times = compute({**self.heated, "Temperature/Value": "oven(t)",
+                             "Table 1/File": table.name})["t"]  # fmt: skip
+        self.assertLess(len(times), 20)
+        for kink in 0.37, 0.61:
+            self.assertLess(abs(times - kink).min(), 1e-9)
 
     def test_restart(self):
         """A run that goes on from a checkpoint, on meshes that change, is the run,

@@ -18,22 +18,25 @@ class Body2D(Body):
     def draw(self, axes):
         cells = self.body.cells
         points = self.deformed[:, :2]
-        if is_cell_data(self.scale.name):
-            polygons = tiles(
-                axes,
-                points[cells],
-                array=self.values,
-                cmap=self.scale.shade.map,
-                norm=self.scale.shade.norm,
-            )
-            # Else vector files grow huge.
-            polygons.set_rasterized(len(cells) > MANY)
-        else:
-            shaded(axes, points, cells, self.at_points, self.scale.shade)
-        draw_mesh(axes, points, cells, self.vertex)
+        for half in self.halves(points):
+            if is_cell_data(self.scale.name):
+                polygons = tiles(
+                    axes,
+                    half[cells],
+                    array=self.values,
+                    cmap=self.scale.shade.map,
+                    norm=self.scale.shade.norm,
+                )
+                # Else vector files grow huge.
+                polygons.set_rasterized(len(cells) > MANY)
+            else:
+                shaded(axes, half, cells, self.at_points, self.scale.shade)
+            draw_mesh(axes, half, cells, self.vertex)
         of_vertex = np.empty((self.vertex.max() + 1, 2))
         of_vertex[self.vertex] = self.body.points[:, :2]
-        outline = [of_vertex[chain] for chain in chains(self.vertex[self.faces])]
+        faces = self.vertex[self.faces[~self.on_axis(self.faces)]]
+        outline = [of_vertex[chain] for chain in chains(faces)]
+        outline = [half for line in outline for half in self.halves(line)]
         # White under the dashes: they cross dark cells and light ones.
         for look in (
             {"colors": "white", "linewidths": 1.8},
@@ -42,6 +45,8 @@ class Body2D(Body):
             axes.add_collection(
                 LineCollection(outline, zorder=3, clip_on=False, **look)
             )
+        if self.scale.mirrored:
+            axes.axvline(0.0, color=style.OUTLINE, lw=0.6, ls="-.", zorder=2)
         handles = []
         if self.contact is not None:
             states = friction_state(self.contact)
@@ -68,20 +73,29 @@ class Body2D(Body):
         style.legend_above(axes, handles)
         self.color_bar(axes, is_flat(self.aspect()))
 
+    def halves(self, points):
+        """Places in the section, and in the other half of a body of revolution."""
+        return [points, points * (-1, 1)] if self.scale.mirrored else [points]
+
+    def on_axis(self, faces):
+        """Of each face whether it lies where a mirrored section meets its other half."""
+        near = np.abs(self.body.points[faces, 0]) < 1e-6 * self.body.size
+        return self.scale.mirrored & near.all(axis=1)
+
     def draw_contact(self, axes, states):
         contact = self.contact
         place = self.moved(contact)[:, :2]
         # A state belongs to a node and to half the edges beside it.
         pieces, runs, colors = [], [], []
         for line in lines(contact):
-            corners = place[line.nodes]
-            pieces.append(corners)
-            middles = 0.5 * (corners[1:] + corners[:-1])
-            ends = np.concatenate([corners[:1], middles, corners[-1:]])
-            for state, first, last in state_runs(states[line.nodes]):
-                inner = corners[first : last + 1]
-                runs.append(np.concatenate([ends[[first]], inner, ends[[last + 1]]]))
-                colors.append(style.STATE_COLORS[state])
+            for corners in self.halves(place[line.nodes]):
+                pieces.append(corners)
+                middles = 0.5 * (corners[1:] + corners[:-1])
+                ends = np.concatenate([corners[:1], middles, corners[-1:]])
+                for state, first, last in state_runs(states[line.nodes]):
+                    inner = corners[first : last + 1]
+                    runs.append(np.concatenate([ends[[first]], inner, ends[[last + 1]]]))
+                    colors.append(style.STATE_COLORS[state])
         for paths, width, color, cap, order in (
             (pieces, 7.5, "black", "projecting", 4),
             (runs, 5.0, colors, "butt", 5),
@@ -118,10 +132,12 @@ class Body2D(Body):
         """Corners of what is drawn: the body with its supports and loads."""
         if self.scale.window:
             return np.array(self.scale.window)
-        low, high = self.scale.low[:2], self.scale.high[:2]
+        low, high = self.scale.low[:2].copy(), self.scale.high[:2]
         if self.scale.supports:
             below, above = supports.reach(self.scale.supports, self.scale)
             low, high = low - below, high + above
+        if self.scale.mirrored:
+            low[0] = -high[0]
         return low, high
 
     def aspect(self):

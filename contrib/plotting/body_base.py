@@ -88,6 +88,7 @@ class Scale:
     units, length, time, unit
                    units in general, of axes, of times and of the field
     supports       what the scene prescribes on the boundary, or None
+    mirrored       whether the section of a body of revolution has its other half
     """
 
     def __init__(self, results, indices, name, options):
@@ -106,6 +107,12 @@ class Scale:
             # What is drawn lies between the extremes of each cell.
             of_cells = field(body, name)[body.cells]
             values += [of_cells.min(axis=1), of_cells.max(axis=1)]
+        on_axis = self.low[0] < 1e-6 * self.size
+        self.mirrored = results.is_of_revolution() and (
+            on_axis if options.mirror is None else options.mirror
+        )
+        if options.mirror and not self.mirrored:
+            raise NoPicture("--mirror is for bodies of revolution")
         self.shade = style.Shade(np.concatenate(values), f'the field "{name}"')
         self.units = Units.of(results)
         kind = quantities.field(name)[1]

@@ -272,6 +272,12 @@ def parse(arguments):
         "beside it",
     )
     how.add_argument(
+        "--mirror",
+        action=argparse.BooleanOptionalAction,
+        help="the other half of a body of revolution, too (default: where its section "
+        "meets the axis)",
+    )
+    how.add_argument(
         "--view",
         type=view,
         default=VIEW,

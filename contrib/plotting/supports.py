@@ -302,7 +302,7 @@ def draw(axes, body, supports):
     """Symbols outside the body; returns their keys."""
     size, time = body.scale.size, body.time
     centers = body.body.points[body.faces].mean(axis=1)
-    ids = supports.of(centers)
+    ids = np.where(body.on_axis(body.faces), -1, supports.of(centers))
     hatched, rollers, pushed, lines, springs = [], [], [], [], []
     for number in np.unique(ids):
         role = supports.role(number)

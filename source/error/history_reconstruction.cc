@@ -245,8 +245,7 @@ namespace Viscoplastic
   HistoryReconstruction
   reconstruct_history(const StressSpace<dim>   &stress_space,
                       const IrreversibleStress &z,
-                      const IrreversibleStress &stress,
-                      const IrreversibleStress *history)
+                      const IrreversibleStress &stress)
   {
     // Of cell means, the values of children follow.
     const bool         of_children = stress_space.n_samples == 1;
@@ -262,16 +261,12 @@ namespace Viscoplastic
     HistoryReconstruction result{
       values(z),
       values(stress),
-      history ? values(*history) : IrreversibleStress(),
       Vector<double>(
         stress_space.space.dof_handler.get_triangulation().n_active_cells())};
     const Neighborhood<dim> near(stress_space);
     const auto mean_z = near.means(z), mean_stress = near.means(stress);
-    const auto of_z       = near.corrections(z, mean_z),
-               of_stress  = near.corrections(stress, mean_stress),
-               of_history = history ?
-                              near.corrections(*history, near.means(*history)) :
-                              std::vector<Slopes<dim>>();
+    const auto of_z      = near.corrections(z, mean_z),
+               of_stress = near.corrections(stress, mean_stress);
 
     // The new slopes, of ghosts, too.
     std::vector<Slopes<dim>> slopes(near.centers.size());
@@ -333,8 +328,6 @@ namespace Viscoplastic
         for (unsigned int s = 0; s < n; ++s)
           {
             result.z[c * n + s] += of_z[c] * places[s];
-            if (history)
-              result.history[c * n + s] += of_history[c] * places[s];
             result.stress[c * n + s] += unrelaxed * (of_stress[c] * places[s]);
           }
       }
@@ -346,11 +339,9 @@ namespace Viscoplastic
   template HistoryReconstruction
   reconstruct_history<2>(const StressSpace<2> &,
                          const IrreversibleStress &,
-                         const IrreversibleStress &,
-                         const IrreversibleStress *);
+                         const IrreversibleStress &);
   template HistoryReconstruction
   reconstruct_history<3>(const StressSpace<3> &,
                          const IrreversibleStress &,
-                         const IrreversibleStress &,
-                         const IrreversibleStress *);
+                         const IrreversibleStress &);
 } // namespace Viscoplastic

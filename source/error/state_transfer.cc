@@ -81,12 +81,7 @@ namespace Viscoplastic
         old_samples.push_back(sampled_stress(old_stress_space, state));
         // z is the first field.
         for_children =
-          reconstruct_history(old_stress_space,
-                              state.z,
-                              old_samples.back(),
-                              old_stress_space.space.scene.has_history() ?
-                                &state.history :
-                                nullptr);
+          reconstruct_history(old_stress_space, state.z, old_samples.back());
       }
     old_cell.resize(triangulation.n_active_cells());
     unsigned int index = 0;
@@ -134,10 +129,9 @@ namespace Viscoplastic
       {
         SymmetricTensor<2, 3>    *packed = &values[f * (n_values + 1)];
         const IrreversibleStress &old =
-          passes_on && f == 0                ? for_children.z :
-          passes_on && carried[f] == stress  ? for_children.stress :
-          passes_on && carried[f] == history ? for_children.history :
-                                               old_samples[f];
+          passes_on && f == 0               ? for_children.z :
+          passes_on && carried[f] == stress ? for_children.stress :
+                                              old_samples[f];
         if (status == Triangulation<dim>::CELL_COARSEN)
           {
             for (unsigned int child = 0; child < cell->n_children(); ++child)

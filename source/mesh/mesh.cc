@@ -24,8 +24,10 @@ namespace Viscoplastic
     read(const GeometryParameters                  &geometry,
          parallel::distributed::Triangulation<dim> &triangulation)
     {
-      const MeshFile file =
-        read_mesh_file(geometry.file, dim, triangulation.get_communicator());
+      const MeshFile file = read_mesh_file(geometry.file,
+                                           dim,
+                                           geometry.plane_model,
+                                           triangulation.get_communicator());
       // From nodes around a face to deal.II's lexicographic order.
       constexpr std::array<unsigned int, 8> order{{0, 1, 3, 2, 4, 5, 7, 6}};
 

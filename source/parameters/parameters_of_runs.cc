@@ -317,6 +317,13 @@ namespace Viscoplastic
       reference_fields,
       "At the end of each phase of time, write the fields in "
       "all cells for coarser runs to be compared with, see `Exact solution/Reference directory'.");
+    prm.add_parameter("Revolved angle",
+                      revolved_angle,
+                      "Degrees by which the section of a body of revolution is "
+                      "turned about its axis for the fields on its surface in "
+                      "space, revolved.pvd: 360 is the whole body, 270 leaves "
+                      "a quarter open, where it shows the section. 0 for none.",
+                      Patterns::Double(0., 360.));
     prm.add_parameter("Points",
                       points,
                       "Points of the body, coordinates separated by commas and "

@@ -8,6 +8,7 @@
 #include <viscoplastic_contact/base/spelling.h>
 #include <viscoplastic_contact/error/solution_errors.h>
 #include <viscoplastic_contact/error/space_estimator.h>
+#include <viscoplastic_contact/mesh/plane_model.h>
 #include <viscoplastic_contact/results/boundary_fields.h>
 #include <viscoplastic_contact/results/line_output.h>
 #include <viscoplastic_contact/results/output.h>
@@ -158,16 +159,27 @@ namespace Viscoplastic
   Output<dim>::resume(const std::vector<double> &earlier)
   {
     times = earlier;
-    std::vector<std::string> names{"solution"};
-    if (scene.has_contact())
-      names.emplace_back("contact");
-    if (scene.has_contact_pairs())
-      names.emplace_back("opposite");
-    for (const std::string &name : names)
+    for (const std::string &name : series())
       {
         write_pvd(name);
         remove_others(name, times.size());
       }
+  }
+
+
+
+  template <int dim>
+  std::vector<std::string>
+  Output<dim>::series() const
+  {
+    std::vector<std::string> result{"solution"};
+    if (scene.has_contact())
+      result.emplace_back("contact");
+    if (scene.has_contact_pairs())
+      result.emplace_back("opposite");
+    if (scene.parameters.output.revolved_angle > 0.)
+      result.emplace_back("revolved");
+    return result;
   }
 
 
@@ -214,13 +226,18 @@ namespace Viscoplastic
   void
   Output<dim>::remove_files_of_earlier_run() const
   {
-    for (const auto &[name, n_outputs] :
-         {std::make_pair("solution", times.size()),
-          std::make_pair("boundary", std::min<std::size_t>(1, times.size())),
-          std::make_pair("contact", scene.has_contact() ? times.size() : 0)})
-      if (std::error_code none;
-          remove_others(name, n_outputs) > 0 && n_outputs == 0)
-        std::filesystem::remove(path + name + ".pvd", none);
+    const std::vector<std::string> present = series();
+    for (const std::string name :
+         {"boundary", "contact", "opposite", "revolved", "solution"})
+      {
+        const std::size_t n_outputs =
+          name == "boundary" ? std::min<std::size_t>(1, times.size()) :
+          std::count(present.begin(), present.end(), name) > 0 ? times.size() :
+                                                                 0;
+        if (std::error_code none;
+            remove_others(name, n_outputs) > 0 && n_outputs == 0)
+          std::filesystem::remove(path + name + ".pvd", none);
+      }
     remove_other_lines(path, scene.output_lines.size());
   }
 
@@ -329,11 +346,11 @@ namespace Viscoplastic
 
 
   template <int dim>
-  template <int patch_dim>
+  template <int patch_dim, int spacedim>
   std::string
-  Output<dim>::write_vtu(const std::string          &name,
-                         PatchOutput<patch_dim, dim> data,
-                         const bool                  is_series)
+  Output<dim>::write_vtu(const std::string               &name,
+                         PatchOutput<patch_dim, spacedim> data,
+                         const bool                       is_series)
   {
     const std::set<unsigned int> cut_off =
       cut_off_infinite(data.patches, data.names.size());
@@ -352,25 +369,25 @@ namespace Viscoplastic
         ".vtu");
     const std::string pvd = is_series ? pvd_record(name, times) : "";
     data.set_flags(vtk_flags());
-    files.push_back(
-      [data = std::make_shared<PatchOutput<patch_dim, dim>>(std::move(data)),
-       path = path,
-       name,
-       record,
-       pieces,
-       pvd,
-       rank]() {
-        std::ostringstream text;
-        data->write_vtu(text);
-        replace_file(path + pieces[rank], text.str());
-        if (rank != 0)
-          return;
-        std::ostringstream list;
-        data->write_pvtu_record(list, pieces);
-        replace_file(path + record + ".pvtu", list.str());
-        if (!pvd.empty())
-          replace_file(path + name + ".pvd", pvd);
-      });
+    files.push_back([data = std::make_shared<PatchOutput<patch_dim, spacedim>>(
+                       std::move(data)),
+                     path = path,
+                     name,
+                     record,
+                     pieces,
+                     pvd,
+                     rank]() {
+      std::ostringstream text;
+      data->write_vtu(text);
+      replace_file(path + pieces[rank], text.str());
+      if (rank != 0)
+        return;
+      std::ostringstream list;
+      data->write_pvtu_record(list, pieces);
+      replace_file(path + record + ".pvtu", list.str());
+      if (!pvd.empty())
+        replace_file(path + name + ".pvd", pvd);
+    });
 
     // Vectors have a data set for each component.
     std::vector<int> is_cut(data_sets.size() + 1, 0);
@@ -498,7 +515,21 @@ namespace Viscoplastic
                is_present(cell);
       });
     data_out.build_patches();
-    return write_vtu("solution", data_out.take_patches(scene, cells));
+    PatchOutput<dim, dim> body = data_out.take_patches(scene, cells);
+    if constexpr (dim == 2)
+      if (const double degrees = scene.parameters.output.revolved_angle;
+          degrees > 0.)
+        {
+          std::vector<std::pair<std::size_t, unsigned int>> edges;
+          for (std::size_t c = 0; c < cells.size(); ++c)
+            for (const unsigned int f : cells[c]->face_indices())
+              if (!is_on_axis(cells[c]->face(f)) &&
+                  (cells[c]->at_boundary(f) ||
+                   !is_present(cells[c]->neighbor(f))))
+                edges.emplace_back(c, f);
+          write_vtu("revolved", revolved(body, edges, degrees));
+        }
+    return write_vtu("solution", std::move(body));
   }
 
 

@@ -6,6 +6,7 @@
 #include <viscoplastic_contact/results/unit_labels.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <set>
@@ -139,6 +140,85 @@ namespace Viscoplastic
       return result;
     }
   };
+
+
+
+  /**
+   * What becomes of a plane section (x, y) = (r, z) that turns by @p degrees
+   * about the y axis, towards those who look along -z: @p edges, each a patch
+   * of @p section and the number of its face in cells of deal.II, sweep
+   * surfaces, and where these do not close, the section itself is at both ends.
+   * Vectors turn; components of tensors remain those of the section.
+   */
+  inline PatchOutput<2, 3>
+  revolved(const PatchOutput<2, 2>                                 &section,
+           const std::vector<std::pair<std::size_t, unsigned int>> &edges,
+           const double                                             degrees)
+  {
+    PatchOutput<2, 3>         result;
+    std::vector<unsigned int> first_of_vectors;
+    for (const auto &[first, last, name, interpretation] : section.vectors)
+      {
+        first_of_vectors.push_back(first);
+        const unsigned int row = first + first_of_vectors.size() - 1;
+        result.vectors.emplace_back(row, row + 2, name, interpretation);
+      }
+    const auto is_vector = [&](const unsigned int row) {
+      return std::count(first_of_vectors.begin(), first_of_vectors.end(), row);
+    };
+    for (unsigned int row = 0; row < section.names.size(); ++row)
+      result.names.insert(result.names.end(),
+                          is_vector(row) > 0 ? 2 : 1,
+                          section.names[row]);
+
+    // Corners, by patch and vertex of the section and the angle.
+    using Corner   = std::pair<unsigned int, double>;
+    const auto add = [&](const DataOutBase::Patch<2, 2> &from,
+                         const std::array<Corner, 4>    &corners) {
+      DataOutBase::Patch<2, 3> patch;
+      patch.patch_index    = result.patches.size();
+      patch.reference_cell = ReferenceCells::Quadrilateral;
+      patch.data.reinit(result.names.size(), 4);
+      for (unsigned int i = 0; i < 4; ++i)
+        {
+          const auto &[v, angle] = corners[i];
+          const double cosine = std::cos(angle), sine = -std::sin(angle);
+          const double r = from.vertices[v][0];
+          patch.vertices[i] =
+            Point<3>(cosine * r, from.vertices[v][1], sine * r);
+          unsigned int target = 0;
+          for (unsigned int row = 0; row < section.names.size(); ++row)
+            if (const double value = from.data(row, v); is_vector(row) > 0)
+              {
+                patch.data(target++, i) = cosine * value;
+                patch.data(target++, i) = from.data(++row, v);
+                patch.data(target++, i) = sine * value;
+              }
+            else
+              patch.data(target++, i) = value;
+        }
+      result.patches.push_back(patch);
+    };
+    const double       whole     = degrees * (numbers::PI / 180.);
+    const unsigned int n_sectors = std::ceil(degrees / 10. - 1e-9);
+    for (const auto &[patch, face] : edges)
+      for (unsigned int s = 0; s < n_sectors; ++s)
+        {
+          const double begin = s * whole / n_sectors,
+                       end   = (s + 1) * whole / n_sectors;
+          const unsigned int v =
+                               GeometryInfo<2>::face_to_cell_vertices(face, 0),
+                             w =
+                               GeometryInfo<2>::face_to_cell_vertices(face, 1);
+          add(section.patches[patch],
+              {{{v, begin}, {w, begin}, {v, end}, {w, end}}});
+        }
+    if (degrees < 360.)
+      for (const double angle : {0., whole})
+        for (const auto &patch : section.patches)
+          add(patch, {{{0, angle}, {1, angle}, {2, angle}, {3, angle}}});
+    return result;
+  }
 
 
 

@@ -73,6 +73,10 @@ namespace Viscoplastic
     output_points                  = read_output_points<dim>(output.points);
     output_lines                   = read_output_lines<dim>(output.lines);
     output_integrals = read_output_integrals(output.integrals, names);
+    AssertThrow(output.revolved_angle == 0. || is_axisymmetric(),
+                ExcMessage("'Output/Revolved angle' is for bodies of "
+                           "revolution ('Geometry/Plane model' = "
+                           "axisymmetric)."));
     if (!parameters.error_control.quantity.empty())
       quantity = quantity_of_interest(
         names.column(parameters.error_control.quantity),

@@ -440,6 +440,10 @@ class Scenes(TestCase):
                 {"Dimension": 3, "Geometry/Arguments": "2, 2, 2 : 0, 0, 0 : 1, 1, 1"},
                 "is that of meshes in 2D",
             ),
+            (
+                {"Geometry/Plane model": "strain", "Output/Revolved angle": 90},
+                "'Output/Revolved angle' is for bodies of revolution",
+            ),
         ):
             with self.subTest(changes):
                 process = run("ring", {**scene, **changes}, text="", check=False)
@@ -466,6 +470,54 @@ class Scenes(TestCase):
             "integral_boundary_3_stress_vector_y [N]",
         ):
             self.assertIn(label, header)
+
+    def test_surface_in_space(self):
+        """Closed, or with the section at its two ends; on ranks and with hanging nodes,
+        around what is there in the present stage."""
+        solid = box(
+            "2, 2",
+            "0, 0 : 2, 1",
+            "symmetry",
+            pressed(0.1),
+            "symmetry",
+            "free",
+            **{
+                "Geometry/Material ids": "if(x < 1, 1, 0)",
+                "Geometry/Boundary refinements": "3: 1",
+                "Material 0/Young's modulus": 1,
+                "Material 1/Young's modulus": 1,
+                "Material 1/Removed at": 0.5,
+                "Time/Phases": "0.5: 1, 1: 1",
+                "Output/Fields every": 1,
+            },
+        )
+        # A circle of 36 straight pieces, or three quarters of it of 27.
+        around = 72 * np.sin(np.pi / 36)
+        for angle, section, ranks in (360, 0, 1), (270, 2, 1), (270, 2, 3):
+            result = run(
+                "ring", {**solid, "Output/Revolved angle": angle}, ranks=ranks, text=""
+            )
+            self.assertClose([t for t, _ in result.series("revolved")], [0, 0.5, 1])
+            for index, inner in (0, 0), (-1, 1):
+                fields = result.fields("revolved", index)
+                a, b, d, c = (fields.points[fields.cells[:, i]] for i in (0, 1, 3, 2))
+                area = np.linalg.norm(np.cross(c - a, d - b), axis=1).sum() / 2
+                # rims, the rings below and above
+                rims = around * (2 + inner)
+                rings = around * np.cos(np.pi / 36) * (4 - inner)
+                expected = angle / 360 * (rims + rings) + section * (2 - inner)
+                self.assertClose(area, expected, relative=1e-6)
+            radius = np.hypot(fields.points[:, 0], fields.points[:, 2])
+            u = fields.point_data["displacement"]
+            # Turned with the section, z upwards.
+            sides = fields.points[:, [0, 2]] / radius[:, None]
+            along = u[:, 0] * sides[:, 0] + u[:, 2] * sides[:, 1]
+            across = u[:, 0] * sides[:, 1] - u[:, 2] * sides[:, 0]
+            self.assertLess(abs(across).max(), 1e-6)
+            outside = radius > 1.9
+            self.assertClose(along[outside], along[outside][0], relative=0.05)
+            self.assertLess(along[outside].max(), -0.1)
+            self.assertGreater(u[fields.points[:, 1] > 0.9, 1].min(), 0.01)
 
     def test_far_from_the_axis(self):
         """A thin ring is a body in plane strain, all around: under the given normal

@@ -304,6 +304,26 @@ class Variants(TestCase):
         )
         self.assertNotIn("computed pressure on seam", [effect for effect, _ in found])
 
+    def test_temperature(self):
+        """Left out as a whole, in each of what it does, and by its means."""
+        hot = scene_file("hot_pipe").read_text()
+        self.assertEqual(
+            [f"{found.effect}: {found.instead}" for found in self.of(hot)],
+            [
+                "viscous flow: elastic",
+                "power of the flow law: 1, same rate at the mean stress",
+                "thermal expansion: none",
+                "activation energy: none",
+                "temperature: none",
+                "temperature over space: its mean",
+                "temperature over time: its mean",
+            ],
+        )
+        cold = hot.replace("set Activation energy = 110 kJ/mol", "")
+        found = [found.effect for found in self.of(cold)]
+        self.assertNotIn("temperature", found)
+        self.assertIn("thermal expansion", found)
+
     def test_anisotropy(self):
         found = self.words(
             SQUARE + "subsection Material\nset Voigt matrix = 3, 1, 1, 0, 0, 0; "

@@ -75,17 +75,17 @@ namespace Viscoplastic
         throw 3;
       if (name == "exits_in_a_run" && point.t > 0.)
         std::exit(0);
-      return -1e-3 * stress;
+      return -factor(point) * stress;
     }
 
     Tangents
     tangents(const SymmetricTensor<2, 3> &,
              const SymmetricTensor<2, 3> &,
              const Stiffness &,
-             const LawPoint &) const override
+             const LawPoint &point) const override
     {
       Tangents tangents;
-      tangents.stress = -1e-3 * identity_tensor<3>();
+      tangents.stress = -factor(point) * identity_tensor<3>();
       return tangents;
     }
 
@@ -93,11 +93,17 @@ namespace Viscoplastic
     relaxation_rate(const SymmetricTensor<2, 3> &,
                     const SymmetricTensor<2, 3> &,
                     const Stiffness &,
-                    const LawPoint &) const override
+                    const LawPoint &point) const override
     {
       return name == "nan_limit"      ? std::numeric_limits<double>::quiet_NaN() :
              name == "negative_limit" ? -1. :
-                                        1e-3;
+                                        factor(point);
+    }
+
+    bool
+    depends_on_temperature() const override
+    {
+      return name == "warms_up";
     }
 
     bool
@@ -107,6 +113,12 @@ namespace Viscoplastic
     }
 
   private:
+    double
+    factor(const LawPoint &point) const
+    {
+      return name == "warms_up" ? 1e-5 * point.temperature : 1e-3;
+    }
+
     const std::string    name;
     mutable unsigned int n_cells = 0, n_points = 0;
   };
@@ -132,7 +144,8 @@ VISCOPLASTIC_LAW_LIBRARY(describe("throws_when_made"),
                          describe("exits_in_a_run"),
                          describe("nan_limit"),
                          describe("negative_limit"),
-                         describe("counts"))
+                         describe("counts"),
+                         describe("warms_up"))
 """
 
 
@@ -272,6 +285,23 @@ class Example(Libraries):
             with self.subTest(law=law, ranks=ranks):
                 library = self.law_file.with_name("misbehaving.so")
                 self.refused(library, sentence, ranks=ranks, **{"Material/Law": law})
+
+    def test_temperature(self):
+        """A law that asks for it in its own code, at a constant 100 K and one that
+        grows with time."""
+        library = self.law_file.with_name("misbehaving.so")
+        warm = {"Additional shared libraries": library, "Material/Law": "warms_up"}
+        self.refused(
+            library, "is a law of the temperature T", **{"Material/Law": "warms_up"}
+        )
+        plain = run("slab", {**warm, "Material/Law": "counts"})
+        same = run("slab", {**warm, "Temperature/Value": 100})
+        for name in "stored_energy", "viscous_dissipation", "max_displacement":
+            self.assertClose(same[name], plain[name], relative=1e-12, what=name)
+        hot = run("slab", {**warm, "Temperature/Value": "100*(1 + t)"}, ranks=2)
+        # that at the beginning of each step
+        limit = hot["step_limit"][1:] * (1 + hot["t"][:-1])
+        self.assertClose(limit, plain["step_limit"][1:], relative=1e-10)
 
     def test_a_step_evaluates_a_law_once(self):
         """At each point of each cell, G at the end of a step is that at the start

@@ -348,6 +348,9 @@ class Choices(TestCase):
             foreign = {"solution_of_mine.vtu", "line_4.csv", "contact_1.pvtu"}
             for name in foreign:
                 (Path(place) / name).write_text("mine\n")
+            # of two bodies, of a body of revolution
+            for name in "opposite.pvd", "opposite_00001.0.vtu", "revolved_00000.pvtu":
+                (Path(place) / name).write_text("of this program\n")
             after = files(**{"Output/Fields every": 16, "Output/Lines": lines[:15]})
             self.assertLessEqual(foreign, after)
             expected = {"parameters.prm", "run.json", "statistics.csv", "line_0.csv"}

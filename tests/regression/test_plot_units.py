@@ -201,7 +201,7 @@ class Folding(TestCase):
             dimension=lambda: 2,
             is_of_revolution=lambda: False,
         )
-        options = SimpleNamespace(magnification=None, window=None, label=[])
+        options = SimpleNamespace(magnification=None, mirror=None, window=None, label=[])
         self.assertEqual(Scale(results, [0], "von_mises", options).magnification, 20)
         body.points *= 0.02  # of a body of the same size
         chosen = Scale(results, [0], "von_mises", options).magnification
@@ -336,7 +336,7 @@ class Supported(TestCase):
         about["units"] = {"length": "m", "time": "day", "stress": "MPa"}
         record.write_text(json.dumps(about))
         results = Results(result.directory)
-        options = SimpleNamespace(magnification=None, window=None, label=[([0.0, 0.0], "here")])
+        options = SimpleNamespace(magnification=None, mirror=None, window=None, label=[([0.0, 0.0], "here")])
         style.set_up()
         scale = overview.scale(results, [3], options)
         figure = overview.draw(results, 3, options, scale)

@@ -38,6 +38,7 @@ from plotting import (
     stick_slip,
     style,
 )
+from matplotlib.collections import LineCollection, PolyCollection
 from matplotlib.quiver import Quiver, QuiverKey
 from matplotlib.transforms import Bbox
 from mpl_toolkits.mplot3d import proj3d
@@ -172,8 +173,10 @@ class Figures(TestCase):
     def tearDown(self):
         plt.close("all")
 
-    def draw(self, results, view=VIEW):
-        options = SimpleNamespace(magnification=None, view=view, label=[], window=None)
+    def draw(self, results, view=VIEW, mirror=None):
+        options = SimpleNamespace(
+            magnification=None, mirror=mirror, view=view, label=[], window=None
+        )
         scale = fields.scale(results, [0], options, "von_mises")
         figure = fields.draw(results, 0, options, scale)
         figure.draw_without_rendering()
@@ -227,7 +230,9 @@ class Figures(TestCase):
     def test_frames_have_the_same_ranges(self):
         """A slip of 2e-5 is drawn shorter than one of 3.6e-4, whatever the mesh."""
         results = sliding_block()
-        options = SimpleNamespace(magnification=None, view=VIEW, label=[], window=None)
+        options = SimpleNamespace(
+            magnification=None, mirror=None, view=VIEW, label=[], window=None
+        )
         for module, n_arrows in ((overview, 1), (contact, 1), (fields, 0)):
             name = ["displacement"] if module is fields else []
             scale = module.scale(results, range(3), options, *name)
@@ -254,7 +259,7 @@ class Figures(TestCase):
         scale = fields.scale(
             results,
             [0],
-            SimpleNamespace(magnification=None, window=None, label=[]),
+            SimpleNamespace(magnification=None, mirror=None, window=None, label=[]),
             "displacement_x",
         )
         self.assertClose((scale.shade.norm.vmin, scale.shade.norm.vmax), (0, 0.05), 1e-12)
@@ -280,6 +285,41 @@ class Figures(TestCase):
                 axis.label.get_window_extent().size[along],
                 bar.get_window_extent().size[along],
             )
+
+    def test_halves_of_bodies_of_revolution(self):
+        """Two where the section meets the axis, or where they are asked for; no line
+        between them."""
+        for begin, revolved, mirror, n_halves in (
+            (0, True, None, 2),
+            (0, True, False, 1),
+            (1, True, None, 1),
+            (1, True, True, 2),
+            (0, False, None, 1),
+        ):
+            results = block(1.0, 0.5)
+            results.is_of_revolution = lambda revolved=revolved: revolved
+            results.body(0).points[:, 0] += begin
+            axes = self.draw(results, mirror=mirror).axes[0]
+            tiles_drawn = [c for c in axes.collections if isinstance(c, PolyCollection)]
+            corners = [
+                np.concatenate([path.vertices for path in drawn.get_paths()])
+                for drawn in tiles_drawn
+            ]
+            self.assertEqual(len(corners), n_halves)
+            self.assertClose(corners[-1][:, 0], corners[0][:, 0] * (3 - 2 * n_halves))
+            low = begin if n_halves == 1 else -begin - 1
+            self.assertClose(axes.get_xlim(), (low, begin + 1), absolute=1e-9)
+            outlines = [
+                line
+                for lines in axes.collections
+                if isinstance(lines, LineCollection) and lines.get_linewidth()[0] == 1.0
+                for line in lines.get_segments()
+            ]
+            self.assertEqual(len(outlines), n_halves)
+            is_closed = [np.array_equal(line[0], line[-1]) for line in outlines]
+            self.assertEqual(is_closed, [n_halves == 1 or begin == 1] * n_halves)
+        with self.assertRaisesRegex(UserError, "is for bodies of revolution"):
+            self.draw(block(1.0, 0.5), mirror=True)
 
     def test_no_hairlines_between_cells(self):
         """Rectangles beside cells that are nearly ones, of any size in pixels."""

@@ -196,6 +196,20 @@ SCENES = {
             {**cells(12, 6, 3, to="0.1, 0.05, 0.012"), **phases("0.1: 4, 1: 8")}
         ),
         "demos/brake_pad_pressed_3d": Scene({**refined(0), **phases("0.1: 4, 1: 8")}),
+        "demos/ball_creep_2d": Scene(
+            {
+                "Geometry/Arguments": "16, 16 : 0, -1 : 1, 0 : true"
+                " | 8, 8 : 0, 0 : 0.5, 0.5 : true",
+                **phases("1: 2, 60: 2, 600: 4"),
+            }
+        ),
+        "demos/hot_shrink_fit_2d": Scene(
+            {
+                "Geometry/Arguments": "6, 8 : 0, 0 : 100, 160 : true"
+                " | 8, 5 : 100, 0 : 250, 80 : true",
+                **phases("10: 4, 1000: 4"),
+            }
+        ),
         "demos/ball_zener_3d": Scene(
             {
                 "Geometry/Arguments": "6, 4, 2 : -12, 0, -12 : 24, 12, 0 : true",

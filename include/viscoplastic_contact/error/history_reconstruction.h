@@ -28,7 +28,7 @@ namespace Viscoplastic
   {
     /// At the samples of all owned cells, or of cell means at the centers of
     /// the children that they would have.
-    IrreversibleStress z, stress, history;
+    IrreversibleStress z, stress;
     /// What is wrong in z in each active cell, (int E^-1 e : e), zero on cells
     /// of other ranks. As it was, e is what the slopes have changed;
     /// with the new ones it is estimated by the jumps to the neighbors that are
@@ -36,12 +36,11 @@ namespace Viscoplastic
     Vector<double> squared_error;
   };
 
-  /// @p z, @p stress (sigma_h) and history variables (null without any), which
-  /// get slopes where z does, at the samples of owned cells. Collective.
+  /// @p z and @p stress (sigma_h), which gets slopes where z does, at the
+  /// samples of owned cells. Collective.
   template <int dim>
   HistoryReconstruction
   reconstruct_history(const StressSpace<dim>   &stress_space,
                       const IrreversibleStress &z,
-                      const IrreversibleStress &stress,
-                      const IrreversibleStress *history = nullptr);
+                      const IrreversibleStress &stress);
 } // namespace Viscoplastic

@@ -24,8 +24,8 @@ namespace Viscoplastic
    * z over every cell that is refined or coarsened. Samples on the children of
    * a cell are values of the polynomial through the parent's samples: a copy of
    * cell means, the (bi-, tri-)linear interpolant of quadrature points. With
-   * viscosity, z, sigma_h and history variables of children have slopes that
-   * fit to the neighbors (see HistoryReconstruction).
+   * viscosity, z and sigma_h of children have slopes that fit to the neighbors
+   * (see HistoryReconstruction).
    *
    * Equilibrium is restored by the next step, which solves for the total
    * displacement.
@@ -92,8 +92,7 @@ namespace Viscoplastic
     /// viscosity (without any: nothing else below), their old values, the
     /// weights of the samples, and the number of each owned cell by active cell
     /// index.
-    static constexpr unsigned int stress  = numbers::invalid_unsigned_int,
-                                  history = 4; // of sample_fields()
+    static constexpr unsigned int   stress = numbers::invalid_unsigned_int;
     std::vector<unsigned int>       carried;
     std::vector<IrreversibleStress> old_samples;
     std::vector<double>             old_weights;

@@ -20,9 +20,10 @@ namespace Viscoplastic
   class PatchOutput;
 
   /**
-   * Results in one directory: fields of the body (solution.pvd) and of Gamma_3
-   * (contact.pvd; opposite.pvd on other bodies) as VTU series, and what is
-   * needed to reproduce the run (parameters.prm, run.json).
+   * Results in one directory: fields of the body (solution.pvd; revolved.pvd of
+   * one of revolution) and of Gamma_3 (contact.pvd; opposite.pvd on other
+   * bodies) as VTU series, and what is needed to reproduce the run
+   * (parameters.prm, run.json).
    */
   template <int dim>
   class Output
@@ -105,17 +106,20 @@ namespace Viscoplastic
                   const ContactFace<dim> *face);
     /// Have the piece of this rank and, on rank 0, the record of all of them
     /// and that of the series written by the next write_in_background().
-    template <int patch_dim>
+    template <int patch_dim, int spacedim>
     std::string
-    write_vtu(const std::string          &name,
-              PatchOutput<patch_dim, dim> data,
-              const bool                  is_series = true);
+    write_vtu(const std::string               &name,
+              PatchOutput<patch_dim, spacedim> data,
+              const bool                       is_series = true);
     /// Begin to write what is in `files`; with several ranks, which leave no
     /// processor idle, write it.
     void
     write_in_background();
     void
     write_pvd(const std::string &name) const;
+    /// The series that the scene has.
+    std::vector<std::string>
+    series() const;
     /// Remove pieces of outputs that do not count, on rank 0: those behind the
     /// last one, and those that no record lists any more. Returns how many.
     std::size_t

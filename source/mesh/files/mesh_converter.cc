@@ -30,7 +30,7 @@ namespace Viscoplastic
 
     /// The text and, if there is none, why: the end of a sentence.
     std::pair<std::string, std::string>
-    run_script(const std::string &name)
+    run_script(const std::string &name, const PlaneModel plane_model)
     {
       namespace process         = boost::process;
       const std::string python  = VISCOPLASTIC_CONTACT_PYTHON;
@@ -42,6 +42,8 @@ namespace Viscoplastic
       process::child    script(
         python,
         path_of_resource("contrib/convert_mesh"),
+        "--plane-model",
+        name_of(plane_model),
         "--",
         name,
         process::std_in<process::null, process::std_out> output,
@@ -71,11 +73,13 @@ namespace Viscoplastic
 
 
   std::string
-  convert_mesh_file(const std::string &name, const MPI_Comm communicator)
+  convert_mesh_file(const std::string &name,
+                    const PlaneModel   plane_model,
+                    const MPI_Comm     communicator)
   {
     std::pair<std::string, std::string> result;
     if (Utilities::MPI::this_mpi_process(communicator) == 0)
-      result = run_script(name);
+      result = run_script(name, plane_model);
     result = Utilities::MPI::broadcast(communicator, result, 0);
     AssertThrow(result.second.empty(),
                 ExcMessage("The mesh file '" + name + "' " + result.second +

@@ -221,6 +221,7 @@ namespace Viscoplastic
   MeshFile
   read_mesh_file(const std::string &name,
                  const unsigned int dim,
+                 const PlaneModel   plane_model,
                  const MPI_Comm     communicator)
   {
     std::string text   = content(name);
@@ -229,7 +230,7 @@ namespace Viscoplastic
     refuse_geometry(name, suffix);
     const bool is_msh = suffix == ".msh";
     if (!is_msh)
-      text = convert_mesh_file(name, communicator);
+      text = convert_mesh_file(name, plane_model, communicator);
 
     MeshReader reader(std::move(text), dim);
     try

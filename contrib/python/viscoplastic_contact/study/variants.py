@@ -15,6 +15,9 @@ KINDS = PROBLEM, DISCRETIZATION, OBSERVATION = (
     "observation",
 )
 
+# What a temperature does, by entries of materials.
+OF_HEAT = "Thermal expansion", "Activation energy"
+
 # muParser refuses expressions of 20000 characters.
 LONGEST_TEXT = 15000
 
@@ -158,6 +161,7 @@ class Variants:
                 self.add_mean(over, "body force", "Loads/Body force")
             self.is_load = False
         if self.scene["Temperature/Value"].strip():
+            self.add_no_temperature()
             for over in ("space", "time"):
                 self.add_mean(over, "temperature", "Temperature/Value")
         initial = "Initial state/Stress", "Initial state/Displacement"
@@ -168,6 +172,19 @@ class Variants:
         self.kind = OBSERVATION
         self.add_observation()
         return self.result
+
+    def add_no_temperature(self):
+        """Where it does more than one thing: one alone has a variant of its own."""
+        told = [
+            path
+            for section in self.materials()
+            for path in (f"{section}/{name}" for name in OF_HEAT)
+            if not is_zero(self.scene[path] or "0")
+        ]
+        if len(told) > 1:
+            told += (f"{section}/Law temperature" for section in self.materials())
+            told += "Temperature/Value", "Temperature/Reference temperature"
+            self.add("temperature", "none", *(f"{path}=" for path in told))
 
     def materials(self):
         """The sections that count."""
@@ -225,8 +242,7 @@ class Variants:
     def add_material(self, section, of):
         law = self.scene[f"{section}/Law"]
         self.add_law(section, of, law)
-        of_heat = ("Thermal expansion", "Activation energy")
-        for name in of_heat[: 1 if law == "elastic" else 2]:
+        for name in OF_HEAT[: 1 if law == "elastic" else 2]:
             if not is_zero(self.scene[f"{section}/{name}"] or "0"):
                 self.add(in_a_sentence(name) + of, "none", f"{section}/{name}=")
         self.add_mean("space", "thermal expansion" + of, f"{section}/Thermal expansion")

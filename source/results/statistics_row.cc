@@ -2,8 +2,6 @@
 #include <viscoplastic_contact/results/recorder.h>
 #include <viscoplastic_contact/results/run_phases.h>
 
-#include <cmath>
-
 // What a run records of each step; doc/results.md tells what it means.
 
 namespace Viscoplastic

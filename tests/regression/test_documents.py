@@ -337,7 +337,7 @@ class Columns(unittest.TestCase):
         rows = (SOURCE / "source/results/statistics_row.cc").read_text()
         table = (SOURCE / "doc/results.md").read_text().split("## statistics.csv")[1]
         known = set(re.findall(r"`_?(\w+?)(?:_x)?`", table.split("\n## ")[0]))
-        names = re.findall(r'row\.add(?:_vector)?\(\s*"(\w+)",', rows)
+        names = re.findall(r'(?:row\.add(?:_vector)?|add_\w+)\(\s*"(\w+)",', rows)
         self.assertGreater(len(names), 50)
         self.assertEqual(set(names) - known, set())
 

@@ -12,7 +12,6 @@
 #include <viscoplastic_contact/run/passes.h>
 #include <viscoplastic_contact/run/scene_as_json.h>
 #include <viscoplastic_contact/run/scene_check.h>
-#include <viscoplastic_contact/run/two_level.h>
 
 #include <cctype>
 #include <chrono>
@@ -56,8 +55,6 @@ namespace
       }
   }
 
-
-
   /// For programs. Returns nothing, as runs do.
   std::string
   print_scene(const Parameters &parameters, const bool with_means)
@@ -70,8 +67,6 @@ namespace
                                      "is the disk full?"));
     return "";
   }
-
-
 
   /// The sentence of a run that a signal has ended; empty for others.
   template <int dim>
@@ -101,8 +96,6 @@ namespace
     return run_in_passes(parameters, console, command_line.restart, &coarser);
   }
 
-
-
   std::string
   run(const CommandLine &command_line, Console &console)
   {
@@ -115,8 +108,6 @@ namespace
                run<3>(parameters, command_line, console);
     });
   }
-
-
 
   std::string
   run(const CommandLine &command_line)
@@ -141,21 +132,15 @@ namespace
       }
   }
 
-
-
   void
   complain(const std::string &sentence)
   {
     std::cerr << "viscoplastic_contact: " << sentence << std::endl;
   }
 
-
-
-  /**
-   * Whether all ranks come here within some seconds: then they have failed
-   * together, and nobody waits for anybody. Those that come have left whatever
-   * they did in common. @p communicator is used for nothing else.
-   */
+  /// Whether all ranks come here within some seconds: then they have failed
+  /// together, and nobody waits for anybody. Those that come have left whatever
+  /// they did in common. @p communicator is used for nothing else.
   bool
   all_have_failed(const MPI_Comm communicator)
   {
@@ -172,8 +157,6 @@ namespace
         std::this_thread::sleep_for(std::chrono::milliseconds(1));
       }
   }
-
-
 
   /// Complain of a failure on this rank, of several ranks. Does not return if
   /// others go on.
@@ -192,8 +175,6 @@ namespace
          std::set<std::string>(sentences.begin(), sentences.end()))
       complain(each);
   }
-
-
 
   /// What a task prints that computes nothing.
   std::string
@@ -218,8 +199,6 @@ namespace
       }
   }
 } // namespace
-
-
 
 int
 main(int argc, char *argv[])

@@ -5,6 +5,7 @@
 #include <viscoplastic_contact/base/messages.h>
 #include <viscoplastic_contact/base/spelling.h>
 #include <viscoplastic_contact/base/table_parser.h>
+#include <viscoplastic_contact/base/types.h>
 
 #include <cmath>
 #include <iostream>
@@ -476,29 +477,12 @@ namespace Viscoplastic
 
 
 
-  template std::unique_ptr<FunctionParser<2>>
-  parse_expression<2>(const std::string &,
-                      const std::string &,
-                      const std::string &);
-  template std::unique_ptr<FunctionParser<3>>
-  parse_expression<3>(const std::string &,
-                      const std::string &,
-                      const std::string &);
-  template Point<2>
-  parse_point<2>(const std::string &, const std::string &);
-  template Point<3>
-  parse_point<3>(const std::string &, const std::string &);
   template class Expression<1>;
   template class Expression<2>;
   template class Expression<3>;
   template class VectorExpression<2>;
   template class VectorExpression<3>;
-  template std::optional<VectorExpression<2>>
-  optional_vector<2>(const std::string &,
-                     const unsigned int,
-                     const std::string &);
-  template std::optional<VectorExpression<3>>
-  optional_vector<3>(const std::string &,
-                     const unsigned int,
-                     const std::string &);
+  VISCOPLASTIC_INSTANTIATE(parse_expression);
+  VISCOPLASTIC_INSTANTIATE(parse_point);
+  VISCOPLASTIC_INSTANTIATE(optional_vector);
 } // namespace Viscoplastic

@@ -3,9 +3,11 @@
 #include <deal.II/base/utilities.h>
 
 #include <viscoplastic_contact/base/files.h>
+#include <viscoplastic_contact/base/source_directory.h>
 #include <viscoplastic_contact/base/spelling.h>
 
 #include <fcntl.h>
+#include <nlohmann/json.hpp>
 #include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -281,5 +283,34 @@ namespace Viscoplastic
           }
         close(opened);
       }
+  }
+
+
+
+  std::string
+  path_of_resource(const std::string &name)
+  {
+    namespace fs = std::filesystem;
+    std::error_code error;
+    // What an installation has is found wherever it was moved to.
+    const fs::path program = fs::read_symlink("/proc/self/exe", error);
+    for (const fs::path &directory :
+         {program.parent_path().parent_path() / "share/viscoplastic_contact",
+          fs::path(VISCOPLASTIC_CONTACT_SOURCE_DIRECTORY)})
+      if (fs::exists(directory / name, error))
+        return (directory / name).string();
+    return "";
+  }
+
+
+
+  std::string
+  json_text(const nlohmann::ordered_json &json)
+  {
+    return json.dump(2,
+                     ' ',
+                     /* ensure_ascii = */ false,
+                     nlohmann::ordered_json::error_handler_t::replace) +
+           '\n';
   }
 } // namespace Viscoplastic

@@ -2,9 +2,6 @@
 #include <viscoplastic_contact/base/heartbeat.h>
 #include <viscoplastic_contact/base/progress.h>
 
-#include <algorithm>
-#include <sstream>
-
 namespace Viscoplastic
 {
   namespace

@@ -5,6 +5,7 @@
 #include <viscoplastic_contact/base/messages.h>
 
 #include <cctype>
+#include <iomanip>
 #include <new>
 #include <sstream>
 
@@ -87,5 +88,15 @@ namespace Viscoplastic
     for (const unsigned int id : ids)
       result += (result.empty() ? "" : ", ") + std::to_string(id);
     return result;
+  }
+
+
+
+  std::string
+  number(const double value, const int digits)
+  {
+    std::ostringstream text;
+    text << std::setprecision(digits) << value;
+    return text.str();
   }
 } // namespace Viscoplastic

@@ -1,24 +1,14 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <viscoplastic_contact/base/messages.h>
 #include <viscoplastic_contact/base/progress.h>
 
 #include <cmath>
 #include <iomanip>
-#include <sstream>
 
 namespace Viscoplastic
 {
   namespace
   {
-    std::string
-    number(const double value, const int digits)
-    {
-      std::ostringstream text;
-      text << std::setprecision(digits) << value;
-      return text.str();
-    }
-
-
-
     /// What there is to tell of a step beside its number and time.
     std::string
     state_of(const StepProgress &step, const std::string &time_unit)

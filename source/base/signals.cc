@@ -3,7 +3,6 @@
 
 #include <viscoplastic_contact/base/signals.h>
 
-#include <algorithm>
 #include <array>
 #include <csignal>
 

@@ -1,15 +1,9 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <deal.II/base/mpi.h>
 #include <deal.II/grid/cell_id.h>
 
 #include <viscoplastic_contact/base/spelling.h>
 #include <viscoplastic_contact/checkpoint/checkpoint.h>
 #include <viscoplastic_contact/mesh/cell_order.h>
-
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <utility>
 
 namespace Viscoplastic
 {
@@ -489,27 +483,9 @@ namespace Viscoplastic
 
 
 
-#define INSTANTIATE(dim)                                            \
-  template std::string pack_mesh<dim>(                              \
-    const parallel::distributed::Triangulation<dim> &);             \
-  template void restore_mesh<dim>(                                  \
-    const std::vector<std::string> &,                               \
-    parallel::distributed::Triangulation<dim> &);                   \
-  template std::string pack_fields<dim>(const StressSpace<dim> &,   \
-                                        const ContactFace<dim> *,   \
-                                        const State<dim> &,         \
-                                        const FaceTruncation *,     \
-                                        const Vector<double> &);    \
-  template bool        unpack_fields<dim>(const PackedFields &,     \
-                                   const StressSpace<dim> &, \
-                                   const ContactFace<dim> *, \
-                                   State<dim> &,             \
-                                   FaceTruncation *,         \
-                                   Vector<double> &);        \
-  template CoarseMesh  describe_coarse_mesh<dim>(                   \
-    const parallel::distributed::Triangulation<dim> &);
-
-  INSTANTIATE(2)
-  INSTANTIATE(3)
-#undef INSTANTIATE
+  VISCOPLASTIC_INSTANTIATE(pack_mesh);
+  VISCOPLASTIC_INSTANTIATE(restore_mesh);
+  VISCOPLASTIC_INSTANTIATE(pack_fields);
+  VISCOPLASTIC_INSTANTIATE(unpack_fields);
+  VISCOPLASTIC_INSTANTIATE(describe_coarse_mesh);
 } // namespace Viscoplastic

@@ -100,12 +100,10 @@ namespace Viscoplastic
 
 
 
-    /**
-     * The files of a directory that are the program's, as its manifest or list
-     * there says, which come last: whatever ends the program while it removes
-     * them in this order, what remains is still known. Empty for a directory
-     * of somebody else.
-     */
+    /// The files of a directory that are the program's, as its manifest or list
+    /// there says, which come last: whatever ends the program while it removes
+    /// them in this order, what remains is still known. Empty for a directory
+    /// of somebody else.
     std::vector<std::string>
     own_files(const std::string &directory)
     {
@@ -140,11 +138,9 @@ namespace Viscoplastic
 
 
 
-    /**
-     * Remove what the program has written in a directory, and the directory
-     * unless something else is in it. Returns whether it was a checkpoint; @p
-     * remarks takes a sentence if the directory stays.
-     */
+    /// Remove what the program has written in a directory, and the directory
+    /// unless something else is in it. Returns whether it was a checkpoint; @p
+    /// remarks takes a sentence if the directory stays.
     bool
     remove_own(const std::string &path, std::vector<std::string> &remarks)
     {

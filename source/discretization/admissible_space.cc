@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <deal.II/base/bounding_box.h>
-#include <deal.II/base/mpi.h>
 #include <deal.II/dofs/dof_tools.h>
 
 #include <viscoplastic_contact/discretization/admissible_space.h>
 #include <viscoplastic_contact/discretization/conditions_at_nodes.h>
 #include <viscoplastic_contact/mesh/cell_order.h>
-
 
 namespace Viscoplastic
 {

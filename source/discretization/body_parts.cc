@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <viscoplastic_contact/discretization/body_parts.h>
 
-#include <map>
-
 namespace Viscoplastic
 {
   template <int dim>
@@ -67,8 +65,5 @@ namespace Viscoplastic
 
 
 
-  template BodyParts
-  find_parts(const AdmissibleSpace<2> &);
-  template BodyParts
-  find_parts(const AdmissibleSpace<3> &);
+  VISCOPLASTIC_INSTANTIATE(find_parts);
 } // namespace Viscoplastic

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <deal.II/base/mpi.h>
-
 #include <viscoplastic_contact/base/largest_place.h>
 #include <viscoplastic_contact/base/number_range.h>
 #include <viscoplastic_contact/contact/contact_solver.h>
@@ -8,8 +6,6 @@
 #include <viscoplastic_contact/discretization/initial_state.h>
 #include <viscoplastic_contact/discretization/springs.h>
 
-#include <algorithm>
-#include <cmath>
 #include <sstream>
 
 namespace Viscoplastic
@@ -265,20 +261,6 @@ namespace Viscoplastic
 
 
 
-  template CompatibilityViolation<2>
-  compatibility_violation<2>(const AdmissibleSpace<2> &,
-                             const Load<2> &,
-                             const ContactFace<2> *,
-                             const DistributedVector &,
-                             ContactState &);
-  template CompatibilityViolation<3>
-  compatibility_violation<3>(const AdmissibleSpace<3> &,
-                             const Load<3> &,
-                             const ContactFace<3> *,
-                             const DistributedVector &,
-                             ContactState &);
-  template std::optional<DisplacementJump<2>>
-  first_jump<2>(const AdmissibleSpace<2> &);
-  template std::optional<DisplacementJump<3>>
-  first_jump<3>(const AdmissibleSpace<3> &);
+  VISCOPLASTIC_INSTANTIATE(compatibility_violation);
+  VISCOPLASTIC_INSTANTIATE(first_jump);
 } // namespace Viscoplastic

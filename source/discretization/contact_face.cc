@@ -1,14 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <deal.II/base/mpi.h>
 #include <deal.II/base/quadrature_lib.h>
-#include <deal.II/fe/fe_values.h>
-#include <deal.II/lac/la_parallel_vector.h>
 
 #include <viscoplastic_contact/discretization/contact_face.h>
 #include <viscoplastic_contact/discretization/held_traction.h>
-
-#include <algorithm>
-#include <utility>
 
 namespace Viscoplastic
 {

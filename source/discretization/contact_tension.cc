@@ -1,9 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <deal.II/base/mpi.h>
-
 #include <viscoplastic_contact/discretization/contact_tension.h>
-
-#include <cmath>
 
 namespace Viscoplastic
 {

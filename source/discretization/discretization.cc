@@ -1,10 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <deal.II/base/mpi.h>
-
 #include <viscoplastic_contact/discretization/discretization.h>
 #include <viscoplastic_contact/discretization/volumetric_integration.h>
 
-#include <algorithm>
 #include <limits>
 
 namespace Viscoplastic
@@ -160,15 +157,8 @@ namespace Viscoplastic
 
 
 
-  template bool
-  may_lock(const Scene<2> &, const double);
-  template bool
-  may_lock(const Scene<3> &, const double);
-  template bool
-  uses_mean_dilatation(const Scene<2> &, const double);
-  template bool
-  uses_mean_dilatation(const Scene<3> &, const double);
-
   template class Discretization<2>;
   template class Discretization<3>;
+  VISCOPLASTIC_INSTANTIATE(may_lock);
+  VISCOPLASTIC_INSTANTIATE(uses_mean_dilatation);
 } // namespace Viscoplastic

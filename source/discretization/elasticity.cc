@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <deal.II/base/quadrature_lib.h>
-#include <deal.II/fe/fe_values.h>
 #include <deal.II/lac/trilinos_sparsity_pattern.h>
 
 #include <viscoplastic_contact/discretization/elasticity.h>
@@ -151,28 +150,6 @@ namespace Viscoplastic
 
   template class ElasticModuli<2>;
   template class ElasticModuli<3>;
-  template void
-  elastic_cell_matrix<2>(const FEValues<2> &,
-                         const Stiffness &,
-                         const bool,
-                         FullMatrix<double> &,
-                         const PlaneModel,
-                         const double);
-  template void
-  elastic_cell_matrix<3>(const FEValues<3> &,
-                         const Stiffness &,
-                         const bool,
-                         FullMatrix<double> &,
-                         const PlaneModel,
-                         const double);
-  template void
-  assemble_elastic_matrix<2>(const AdmissibleSpace<2> &,
-                             const ElasticModuli<2> &,
-                             const bool,
-                             DistributedMatrix &);
-  template void
-  assemble_elastic_matrix<3>(const AdmissibleSpace<3> &,
-                             const ElasticModuli<3> &,
-                             const bool,
-                             DistributedMatrix &);
+  VISCOPLASTIC_INSTANTIATE(elastic_cell_matrix);
+  VISCOPLASTIC_INSTANTIATE(assemble_elastic_matrix);
 } // namespace Viscoplastic

@@ -1,12 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <deal.II/base/mpi.h>
-
 #include <viscoplastic_contact/base/largest_place.h>
 #include <viscoplastic_contact/base/number_range.h>
 #include <viscoplastic_contact/discretization/energy.h>
-
-#include <array>
-#include <cmath>
 
 namespace Viscoplastic
 {
@@ -211,26 +206,7 @@ namespace Viscoplastic
 
 
 
-  template StressSummary<2>
-  summarize_stress<2>(const FlowLaws<2> &, const State<2> &, const State<2> &);
-  template StressSummary<3>
-  summarize_stress<3>(const FlowLaws<3> &, const State<3> &, const State<3> &);
-  template CellEnergies
-  energies_of_cell<2>(const FlowLaws<2> &,
-                      const FlowLaws<2>::AtTime &,
-                      const FlowLaws<2>::AtTime &,
-                      const State<2> &,
-                      const State<2> &,
-                      const std::size_t);
-  template CellEnergies
-  energies_of_cell<3>(const FlowLaws<3> &,
-                      const FlowLaws<3>::AtTime &,
-                      const FlowLaws<3>::AtTime &,
-                      const State<3> &,
-                      const State<3> &,
-                      const std::size_t);
-  template double
-  relative_stress_fluctuation<2>(const StressSpace<2> &, const State<2> &);
-  template double
-  relative_stress_fluctuation<3>(const StressSpace<3> &, const State<3> &);
+  VISCOPLASTIC_INSTANTIATE(summarize_stress);
+  VISCOPLASTIC_INSTANTIATE(energies_of_cell);
+  VISCOPLASTIC_INSTANTIATE(relative_stress_fluctuation);
 } // namespace Viscoplastic

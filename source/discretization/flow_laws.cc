@@ -1,13 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <deal.II/base/mpi.h>
-
 #include <viscoplastic_contact/base/largest_place.h>
 #include <viscoplastic_contact/base/messages.h>
 #include <viscoplastic_contact/discretization/flow_laws.h>
 
-#include <algorithm>
-#include <array>
-#include <cmath>
 #include <sstream>
 
 namespace Viscoplastic
@@ -359,14 +354,5 @@ namespace Viscoplastic
 
   template class FlowLaws<2>;
   template class FlowLaws<3>;
-  template FlowRate
-  evaluate_flow<2>(const FlowLaws<2> &,
-                   const State<2> &,
-                   const double,
-                   const ExactSolution<2>::Side);
-  template FlowRate
-  evaluate_flow<3>(const FlowLaws<3> &,
-                   const State<3> &,
-                   const double,
-                   const ExactSolution<3>::Side);
+  VISCOPLASTIC_INSTANTIATE(evaluate_flow);
 } // namespace Viscoplastic

@@ -1,10 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <deal.II/base/mpi.h>
-
 #include <viscoplastic_contact/base/number_range.h>
 #include <viscoplastic_contact/discretization/force_balance.h>
 
-#include <cmath>
 #include <limits>
 
 namespace Viscoplastic
@@ -288,34 +285,11 @@ namespace Viscoplastic
 
 
 
-#define INSTANTIATE(dim)                                                       \
-  template Forces<dim>    evaluate_forces<dim>(const StressSpace<dim> &,       \
-                                            const DistributedMatrix &,      \
-                                            Load<dim>,                      \
-                                            const State<dim> &);            \
-  template EnergyRounding energy_rounding<dim>(const AdmissibleSpace<dim> &,   \
-                                               const DistributedMatrix &,      \
-                                               const Forces<dim> &);           \
-  template std::map<types::boundary_id, Tensor<1, dim>> reactions<dim>(        \
-    const AdmissibleSpace<dim> &, const Forces<dim> &);                        \
-  template double             axial_force<dim>(const AdmissibleSpace<dim> &,   \
-                                   const Forces<dim> &);           \
-  template double             external_work<dim>(const AdmissibleSpace<dim> &, \
-                                     const Forces<dim> &,          \
-                                     const Forces<dim> &);         \
-  template NormalContact<dim> summarize_contact<dim>(                          \
-    const ContactFace<dim> &,                                                  \
-    const ContactState &,                                                      \
-    const ContactState &,                                                      \
-    const DistributedVector &);                                                \
-  template FrictionIdentities check_friction<dim>(const ContactFace<dim> &,    \
-                                                  const ContactState &,        \
-                                                  const ContactState &,        \
-                                                  const DistributedVector &,   \
-                                                  const double);
-
-  INSTANTIATE(2)
-  INSTANTIATE(3)
-
-#undef INSTANTIATE
+  VISCOPLASTIC_INSTANTIATE(evaluate_forces);
+  VISCOPLASTIC_INSTANTIATE(energy_rounding);
+  VISCOPLASTIC_INSTANTIATE(reactions);
+  VISCOPLASTIC_INSTANTIATE(axial_force);
+  VISCOPLASTIC_INSTANTIATE(external_work);
+  VISCOPLASTIC_INSTANTIATE(summarize_contact);
+  VISCOPLASTIC_INSTANTIATE(check_friction);
 } // namespace Viscoplastic

@@ -1,10 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <deal.II/base/quadrature_lib.h>
-#include <deal.II/fe/fe_values.h>
 
 #include <viscoplastic_contact/discretization/held_traction.h>
-
-#include <algorithm>
 
 namespace Viscoplastic
 {

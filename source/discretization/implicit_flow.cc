@@ -132,28 +132,6 @@ namespace Viscoplastic
 
 
 
-  template void
-  advance_history<2>(const FlowLaws<2>::AtTime &,
-                     const StressSpace<2> &,
-                     const double,
-                     State<2> &);
-  template void
-  advance_history<3>(const FlowLaws<3>::AtTime &,
-                     const StressSpace<3> &,
-                     const double,
-                     State<3> &);
-  template IrreversibleStress
-  implicit_irreversible_stress<2>(const FlowLaws<2>::AtTime &,
-                                  const StressSpace<2> &,
-                                  const DistributedVector &,
-                                  const IrreversibleStress &,
-                                  const double,
-                                  const IrreversibleStress &);
-  template IrreversibleStress
-  implicit_irreversible_stress<3>(const FlowLaws<3>::AtTime &,
-                                  const StressSpace<3> &,
-                                  const DistributedVector &,
-                                  const IrreversibleStress &,
-                                  const double,
-                                  const IrreversibleStress &);
+  VISCOPLASTIC_INSTANTIATE(advance_history);
+  VISCOPLASTIC_INSTANTIATE(implicit_irreversible_stress);
 } // namespace Viscoplastic

@@ -1,16 +1,11 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <deal.II/base/mpi.h>
 #include <deal.II/base/quadrature_lib.h>
-#include <deal.II/fe/fe_values.h>
 
 #include <viscoplastic_contact/discretization/bulk_system.h>
 #include <viscoplastic_contact/discretization/initial_state.h>
 #include <viscoplastic_contact/discretization/springs.h>
 #include <viscoplastic_contact/discretization/thermal_strain.h>
-#include <viscoplastic_contact/laws/strain.h>
 
-#include <algorithm>
-#include <cmath>
 #include <sstream>
 
 namespace Viscoplastic
@@ -405,46 +400,11 @@ namespace Viscoplastic
 
 
 
-  template DistributedVector
-  work_of_initial_stress(const AdmissibleSpace<2> &, const unsigned int);
-  template DistributedVector
-  work_of_initial_stress(const AdmissibleSpace<3> &, const unsigned int);
-  template SymmetricTensor<2, 3>
-  initial_stress<2>(const Scene<2> &,
-                    const Point<2> &,
-                    const types::material_id);
-  template SymmetricTensor<2, 3>
-  initial_stress<3>(const Scene<3> &,
-                    const Point<3> &,
-                    const types::material_id);
-  template State<2>
-  make_initial_state<2>(const StressSpace<2> &, const bool);
-  template State<3>
-  make_initial_state<3>(const StressSpace<3> &, const bool);
-  template const DistributedVector &
-  reported_displacement<2>(const Scene<2> &,
-                           const State<2> &,
-                           DistributedVector &);
-  template const DistributedVector &
-  reported_displacement<3>(const Scene<3> &,
-                           const State<3> &,
-                           DistributedVector &);
-  template IrreversibleStress
-  initial_irreversible_stress<2>(const StressSpace<2> &,
-                                 const DistributedVector &);
-  template IrreversibleStress
-  initial_irreversible_stress<3>(const StressSpace<3> &,
-                                 const DistributedVector &);
-  template double
-  initial_data_error<2>(const StressSpace<2> &,
-                        const State<2> &,
-                        Vector<double> *);
-  template double
-  initial_data_error<3>(const StressSpace<3> &,
-                        const State<3> &,
-                        Vector<double> *);
-  template void
-  enter_stage<2>(const StressSpace<2> &, const std::vector<bool> &, State<2> &);
-  template void
-  enter_stage<3>(const StressSpace<3> &, const std::vector<bool> &, State<3> &);
+  VISCOPLASTIC_INSTANTIATE(work_of_initial_stress);
+  VISCOPLASTIC_INSTANTIATE(initial_stress);
+  VISCOPLASTIC_INSTANTIATE(make_initial_state);
+  VISCOPLASTIC_INSTANTIATE(reported_displacement);
+  VISCOPLASTIC_INSTANTIATE(initial_irreversible_stress);
+  VISCOPLASTIC_INSTANTIATE(initial_data_error);
+  VISCOPLASTIC_INSTANTIATE(enter_stage);
 } // namespace Viscoplastic

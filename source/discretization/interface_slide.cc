@@ -1,11 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <deal.II/base/mpi.h>
-
 #include <viscoplastic_contact/discretization/held_traction.h>
 #include <viscoplastic_contact/discretization/interface_slide.h>
-
-#include <algorithm>
-#include <cmath>
 
 namespace Viscoplastic
 {

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <deal.II/base/geometry_info.h>
-#include <deal.II/base/mpi.h>
 #include <deal.II/base/quadrature_lib.h>
 
 #include <viscoplastic_contact/discretization/interface_sides.h>
@@ -9,11 +8,6 @@
 
 #include <boost/serialization/map.hpp>
 #include <boost/serialization/utility.hpp>
-
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <set>
 
 namespace Viscoplastic
 {

@@ -329,14 +329,6 @@ namespace Viscoplastic
 
 
 
-  template NodalFrame<2>
-  make_nodal_frame<2>(const std::vector<const BoundaryCondition<2> *> &,
-                      const Tensor<1, 2> &);
-  template NodalFrame<3>
-  make_nodal_frame<3>(const std::vector<const BoundaryCondition<3> *> &,
-                      const Tensor<1, 3> &);
-  template Tensor<2, 2>
-  condition_matrix<2>(const NodalFrame<2> &);
-  template Tensor<2, 3>
-  condition_matrix<3>(const NodalFrame<3> &);
+  VISCOPLASTIC_INSTANTIATE(make_nodal_frame);
+  VISCOPLASTIC_INSTANTIATE(condition_matrix);
 } // namespace Viscoplastic

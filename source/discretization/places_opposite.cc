@@ -2,8 +2,6 @@
 #include <viscoplastic_contact/discretization/interface_sides.h>
 #include <viscoplastic_contact/discretization/places_opposite.h>
 
-#include <map>
-
 namespace Viscoplastic
 {
   template <int dim>
@@ -57,20 +55,5 @@ namespace Viscoplastic
 
 
 
-  template std::vector<PlaceOpposite<2>>
-  places_opposite(const DoFHandler<2> &,
-                  const AffineConstraints<double> &,
-                  const ContactPair<2> &,
-                  const std::vector<InterfacePlace<2>> &,
-                  const std::function<
-                    double(const typename DoFHandler<2>::active_cell_iterator &,
-                           const unsigned int)> &);
-  template std::vector<PlaceOpposite<3>>
-  places_opposite(const DoFHandler<3> &,
-                  const AffineConstraints<double> &,
-                  const ContactPair<3> &,
-                  const std::vector<InterfacePlace<3>> &,
-                  const std::function<
-                    double(const typename DoFHandler<3>::active_cell_iterator &,
-                           const unsigned int)> &);
+  VISCOPLASTIC_INSTANTIATE(places_opposite);
 } // namespace Viscoplastic

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <deal.II/base/mpi.h>
-
 #include <viscoplastic_contact/discretization/point_probe.h>
 #include <viscoplastic_contact/mesh/point_location.h>
 

@@ -2,6 +2,7 @@
 #include <deal.II/base/mpi.h>
 #include <deal.II/lac/lapack_full_matrix.h>
 
+#include <viscoplastic_contact/base/types.h>
 #include <viscoplastic_contact/discretization/seen_motions.h>
 
 #include <algorithm>
@@ -159,10 +160,6 @@ namespace Viscoplastic
 
 
 
-  template std::string in_words<2>(std::vector<RigidMotion>);
-  template std::string in_words<3>(std::vector<RigidMotion>);
-  template std::array<Tensor<1, 2>, 3>
-  rigid_displacements(const Tensor<1, 2> &);
-  template std::array<Tensor<1, 3>, 6>
-  rigid_displacements(const Tensor<1, 3> &);
+  VISCOPLASTIC_INSTANTIATE(in_words);
+  VISCOPLASTIC_INSTANTIATE(rigid_displacements);
 } // namespace Viscoplastic

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <deal.II/base/quadrature_lib.h>
 #include <deal.II/fe/fe_dgq.h>
-#include <deal.II/fe/fe_values.h>
 
 #include <viscoplastic_contact/discretization/stress_space.h>
 
@@ -318,13 +317,5 @@ namespace Viscoplastic
 
   template class StressSpace<2>;
   template class StressSpace<3>;
-
-  template void
-  add_irreversible_load<2>(const StressSpace<2> &,
-                           const IrreversibleStress &,
-                           DistributedVector &);
-  template void
-  add_irreversible_load<3>(const StressSpace<3> &,
-                           const IrreversibleStress &,
-                           DistributedVector &);
+  VISCOPLASTIC_INSTANTIATE(add_irreversible_load);
 } // namespace Viscoplastic

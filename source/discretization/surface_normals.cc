@@ -5,11 +5,7 @@
 #include <viscoplastic_contact/discretization/plane_faces.h>
 #include <viscoplastic_contact/discretization/surface_normals.h>
 
-#include <algorithm>
 #include <limits>
-#include <map>
-#include <set>
-#include <vector>
 
 namespace Viscoplastic
 {

@@ -1,11 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <deal.II/base/mpi.h>
-
 #include <viscoplastic_contact/base/messages.h>
 #include <viscoplastic_contact/discretization/tangent_matrix.h>
 #include <viscoplastic_contact/laws/backward_euler.h>
-
-#include <cmath>
 
 namespace Viscoplastic
 {

@@ -1,10 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <deal.II/base/mpi.h>
-
 #include <viscoplastic_contact/base/messages.h>
 #include <viscoplastic_contact/discretization/thermal_strain.h>
 
-#include <algorithm>
 #include <sstream>
 
 namespace Viscoplastic
@@ -176,16 +173,7 @@ namespace Viscoplastic
 
 
 
-  template const IrreversibleStress &
-  without_thermal_stress(const ThermalStrain<2> *,
-                         const double,
-                         const IrreversibleStress &,
-                         IrreversibleStress &);
-  template const IrreversibleStress &
-  without_thermal_stress(const ThermalStrain<3> *,
-                         const double,
-                         const IrreversibleStress &,
-                         IrreversibleStress &);
   template class ThermalStrain<2>;
   template class ThermalStrain<3>;
+  VISCOPLASTIC_INSTANTIATE(without_thermal_stress);
 } // namespace Viscoplastic

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-
 #include <viscoplastic_contact/laws/arrhenius.h>
 
-#include <cmath>
 #include <utility>
 
 namespace Viscoplastic

@@ -2,9 +2,6 @@
 #include <viscoplastic_contact/base/messages.h>
 #include <viscoplastic_contact/laws/backward_euler.h>
 
-#include <cmath>
-#include <limits>
-#include <optional>
 #include <sstream>
 
 namespace Viscoplastic
@@ -17,15 +14,13 @@ namespace Viscoplastic
 
 
 
-    /**
-     * Radial return in an isotropic body: with the trial stress E eps + z_old,
-     * whose deviator keeps its direction, sigma_eq solves
-     *
-     *     sigma_eq + 3 mu k f(sigma_eq) = sigma_eq of the trial stress.
-     *
-     * The left side is convex: Newton's method comes from above after its first
-     * step. Nothing where the law has no such flow or no value.
-     */
+    /// Radial return in an isotropic body: with the trial stress E eps + z_old,
+    /// whose deviator keeps its direction, sigma_eq solves
+    ///
+    ///     sigma_eq + 3 mu k f(sigma_eq) = sigma_eq of the trial stress.
+    ///
+    /// The left side is convex: Newton's method comes from above after its
+    /// first step. Nothing where the law has no such flow or no value.
     std::optional<SymmetricTensor<2, 3>>
     radial_return(const BackwardEulerEquation &equation,
                   const SymmetricTensor<2, 3> &start)
@@ -114,12 +109,10 @@ namespace Viscoplastic
 
 
 
-    /**
-     * The tangent where radial_return() has given the stress, and its inverse:
-     * dev sigma is that of the trial stress over 1 + a, and changes by 1/(1 +
-     * b) along itself. Both are definite, since f is convex. Nothing for other
-     * laws and bodies, and where nothing flows.
-     */
+    /// The tangent where radial_return() has given the stress, and its inverse:
+    /// dev sigma is that of the trial stress over 1 + a, and changes by 1/(1 +
+    /// b) along itself. Both are definite, since f is convex. Nothing for other
+    /// laws and bodies, and where nothing flows.
     std::optional<StepTangent>
     radial_tangent(const ViscoplasticLaw       &law,
                    const SymmetricTensor<2, 3> &stress,

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-
 #include <viscoplastic_contact/laws/pointwise_law.h>
 
 #include <algorithm>
@@ -14,16 +13,14 @@ namespace Viscoplastic
 
   namespace
   {
-    /**
-     * A spring, a dashpot and a Kelvin body in series. With s = dev sigma and
-     * the strain e of the Kelvin body, which the history variables are,
-     *
-     *     e' = (s - 2 G_K e)/(2 eta_K),   G = -E (s/(2 eta_M) + e').
-     *
-     * In Lubby2 eta_M, G_K and eta_K are those without stress times exp(m
-     * sigma_eq), exp(k_1 sigma_eq) and exp(k_2 sigma_eq), with sigma_eq of the
-     * cap beyond it.
-     */
+    /// A spring, a dashpot and a Kelvin body in series. With s = dev sigma and
+    /// the strain e of the Kelvin body, which the history variables are,
+    ///
+    ///     e' = (s - 2 G_K e)/(2 eta_K),   G = -E (s/(2 eta_M) + e').
+    ///
+    /// In Lubby2 eta_M, G_K and eta_K are those without stress times exp(m
+    /// sigma_eq), exp(k_1 sigma_eq) and exp(k_2 sigma_eq), with sigma_eq of the
+    /// cap beyond it.
     class Burgers final : public PointwiseLaw<Burgers>
     {
     public:

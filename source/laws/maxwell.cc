@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-
 #include <viscoplastic_contact/laws/pointwise_law.h>
 
 namespace Viscoplastic
@@ -9,10 +8,8 @@ namespace Viscoplastic
 
   namespace
   {
-    /**
-     * G = -E dev sigma/(2 eta): an elastic spring in series with a dashpot
-     * whose strain rate is dev sigma/(2 eta).
-     */
+    /// G = -E dev sigma/(2 eta): an elastic spring in series with a dashpot
+    /// whose strain rate is dev sigma/(2 eta).
     class Maxwell final : public RadialLaw<Maxwell>
     {
     public:

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-
 #include <viscoplastic_contact/laws/pointwise_law.h>
 
 #include <algorithm>
@@ -12,16 +11,14 @@ namespace Viscoplastic
 
   namespace
   {
-    /**
-     * G = -E (strain rate), strain rate = 3/2 f(sigma_eq) s/sigma_eq, where
-     * s = dev sigma, sigma_eq is the von Mises stress, and f the equivalent
-     * strain rate
-     *
-     *     f = A sigma_eq^n                             up to the cap c,
-     *     f = A c^n + A n c^(n-1) (sigma_eq - c)       beyond:
-     *
-     * the tangent there, without which G were not Lipschitz.
-     */
+    /// G = -E (strain rate), strain rate = 3/2 f(sigma_eq) s/sigma_eq, where
+    /// s = dev sigma, sigma_eq is the von Mises stress, and f the equivalent
+    /// strain rate
+    ///
+    ///     f = A sigma_eq^n                             up to the cap c,
+    ///     f = A c^n + A n c^(n-1) (sigma_eq - c)       beyond:
+    ///
+    /// the tangent there, without which G were not Lipschitz.
     class Norton final : public RadialLaw<Norton>
     {
     public:

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-
 #include <viscoplastic_contact/laws/pointwise_law.h>
 
 #include <algorithm>
@@ -12,15 +11,13 @@ namespace Viscoplastic
 
   namespace
   {
-    /**
-     * G = -E (strain rate), strain rate = 3/2 F f s/sigma_eq, where s = dev
-     * sigma, F is a function of position and time, and the equivalent strain
-     * rate f(sigma_eq, p, eps_eq, T, t) is given as an expression of the
-     * temperature T and
-     *
-     *     sigma_eq = sqrt(3/2) |s|,   p = -tr(sigma)/3,
-     *     eps_eq = sqrt(2/3) |d|,     d = dev(eps - E^-1 sigma).
-     */
+    /// G = -E (strain rate), strain rate = 3/2 F f s/sigma_eq, where s = dev
+    /// sigma, F is a function of position and time, and the equivalent strain
+    /// rate f(sigma_eq, p, eps_eq, T, t) is given as an expression of the
+    /// temperature T and
+    ///
+    ///     sigma_eq = sqrt(3/2) |s|,   p = -tr(sigma)/3,
+    ///     eps_eq = sqrt(2/3) |d|,     d = dev(eps - E^-1 sigma).
     class Parsed final : public PointwiseLaw<Parsed>
     {
     public:

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-
 #include <viscoplastic_contact/laws/pointwise_law.h>
 
 namespace Viscoplastic
@@ -9,21 +8,19 @@ namespace Viscoplastic
 
   namespace
   {
-    /**
-     * Perzyna's viscoplasticity (Adv. Appl. Mech. 9, 1966) with the elastic
-     * range K = {|dev sigma| <= R},
-     *
-     *     G = -(1/lambda) E (sigma - P_K sigma).
-     *
-     * The projection P_K shortens the deviator to the
-     * length R and leaves the pressure alone, so that with s = dev sigma
-     *
-     *     sigma - P_K sigma = (1 - R/|s|)_+ s.
-     *
-     * The radius grows with the viscoplastic strain eps - E^-1 sigma,
-     *
-     *     R = k_Y + H sqrt(2/3) |d|,   d = dev(eps - E^-1 sigma).
-     */
+    /// Perzyna's viscoplasticity (Adv. Appl. Mech. 9, 1966) with the elastic
+    /// range K = {|dev sigma| <= R},
+    ///
+    ///     G = -(1/lambda) E (sigma - P_K sigma).
+    ///
+    /// The projection P_K shortens the deviator to the
+    /// length R and leaves the pressure alone, so that with s = dev sigma
+    ///
+    ///     sigma - P_K sigma = (1 - R/|s|)_+ s.
+    ///
+    /// The radius grows with the viscoplastic strain eps - E^-1 sigma,
+    ///
+    ///     R = k_Y + H sqrt(2/3) |d|,   d = dev(eps - E^-1 sigma).
     class Perzyna final : public PointwiseLaw<Perzyna>
     {
     public:

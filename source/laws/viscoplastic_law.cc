@@ -1,16 +1,12 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-
-#include <deal.II/lac/full_matrix.h>
 #include <deal.II/lac/vector.h>
 
 #include <viscoplastic_contact/base/subsection.h>
 #include <viscoplastic_contact/laws/viscoplastic_law.h>
 
 #include <algorithm>
-#include <cmath>
 #include <sstream>
 #include <utility>
-#include <vector>
 
 // The registry, one line a law: the file source/laws/<name>.cc defines
 // <name>_description(). It is a list, not a set of self-registering objects: a

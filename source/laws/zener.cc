@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-
 #include <viscoplastic_contact/laws/pointwise_law.h>
 
 #include <algorithm>
@@ -42,10 +41,8 @@ namespace Viscoplastic
 
 
 
-    /**
-     * B = E - E_inf. Where E_inf = E, rounding is what is left of B: equal
-     * moduli may come out of different formulas.
-     */
+    /// B = E - E_inf. Where E_inf = E, rounding is what is left of B: equal
+    /// moduli may come out of different formulas.
     class SecondSpring
     {
     public:
@@ -185,23 +182,21 @@ namespace Viscoplastic
 
 
 
-    /**
-     * G = -(1/theta) (sigma - E_inf eps): two springs in parallel, one of
-     * stiffness E_inf and one of stiffness B = E - E_inf in series with a
-     * dashpot, which carries the stress q = sigma - E_inf eps. The stored
-     * energy is that of both springs,
-     *
-     *     1/2 E_inf eps : eps + 1/2 B^-1 q : q.
-     *
-     * A mode that does not relax, e.g. the volumetric one where K_inf = K, has
-     * no second spring, and there q is but what is left of an initial stress.
-     * With the part q_N of q in these modes the energy has
-     *
-     *     q_N : eps + 1/2 E^-1 q_N : q_N
-     *
-     * in place of 1/2 B^-1 q_N : q_N, as in the other laws: all of it is
-     * 1/2 E^-1 sigma : sigma if no mode relaxes.
-     */
+    /// G = -(1/theta) (sigma - E_inf eps): two springs in parallel, one of
+    /// stiffness E_inf and one of stiffness B = E - E_inf in series with a
+    /// dashpot, which carries the stress q = sigma - E_inf eps. The stored
+    /// energy is that of both springs,
+    ///
+    ///     1/2 E_inf eps : eps + 1/2 B^-1 q : q.
+    ///
+    /// A mode that does not relax, e.g. the volumetric one where K_inf = K, has
+    /// no second spring, and there q is but what is left of an initial stress.
+    /// With the part q_N of q in these modes the energy has
+    ///
+    ///     q_N : eps + 1/2 E^-1 q_N : q_N
+    ///
+    /// in place of 1/2 B^-1 q_N : q_N, as in the other laws: all of it is
+    /// 1/2 E^-1 sigma : sigma if no mode relaxes.
     class Zener final : public PointwiseLaw<Zener>
     {
     public:

@@ -2,7 +2,6 @@
 #include <viscoplastic_contact/mesh/marking_threshold.h>
 
 #include <algorithm>
-#include <cmath>
 
 namespace Viscoplastic
 {

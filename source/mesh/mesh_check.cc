@@ -4,6 +4,7 @@
 #include <deal.II/base/quadrature_lib.h>
 
 #include <viscoplastic_contact/base/number_range.h>
+#include <viscoplastic_contact/base/types.h>
 #include <viscoplastic_contact/mesh/mesh_check.h>
 
 #include <cmath>
@@ -15,11 +16,9 @@ namespace Viscoplastic
 {
   namespace
   {
-    /**
-     * Return the least value in the cell, at its vertices and Gauss points, of
-     * the determinant of the Jacobian divided by the lengths of its columns: 1
-     * in a box, the sine of the angle in a parallelogram.
-     */
+    /// Return the least value in the cell, at its vertices and Gauss points, of
+    /// the determinant of the Jacobian divided by the lengths of its columns: 1
+    /// in a box, the sine of the angle in a parallelogram.
     template <int dim, typename CellIterator>
     double
     least_scaled_jacobian(const CellIterator            &cell,
@@ -181,12 +180,6 @@ namespace Viscoplastic
 
 
 
-  template void
-  check_mesh(const parallel::distributed::Triangulation<2> &);
-  template void
-  check_mesh(const parallel::distributed::Triangulation<3> &);
-  template void
-  check_connection(const parallel::distributed::Triangulation<2> &);
-  template void
-  check_connection(const parallel::distributed::Triangulation<3> &);
+  VISCOPLASTIC_INSTANTIATE(check_mesh);
+  VISCOPLASTIC_INSTANTIATE(check_connection);
 } // namespace Viscoplastic

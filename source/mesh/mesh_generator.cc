@@ -1,22 +1,19 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <deal.II/base/utilities.h>
 #include <deal.II/grid/grid_generator.h>
 #include <deal.II/grid/grid_tools.h>
 #include <deal.II/grid/manifold_lib.h>
 
 #include <viscoplastic_contact/base/messages.h>
 #include <viscoplastic_contact/base/spelling.h>
-#include <viscoplastic_contact/mesh/mesh_generator.h>
+#include <viscoplastic_contact/base/types.h>
+#include <viscoplastic_contact/mesh/mesh.h>
 #include <viscoplastic_contact/mesh/mesh_size.h>
 
-#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <map>
 #include <memory>
 #include <sstream>
-#include <string>
-#include <vector>
 
 namespace Viscoplastic
 {
@@ -138,12 +135,10 @@ namespace Viscoplastic
 
 
 
-    /**
-     * Check the arguments of a box: deal.II takes what is not a list of whole
-     * numbers of cells for lists of step sizes, one a direction, and in release
-     * mode compares neither their number nor that of the numbers of cells with
-     * the dimension.
-     */
+    /// Check the arguments of a box: deal.II takes what is not a list of whole
+    /// numbers of cells for lists of step sizes, one a direction, and in
+    /// release mode compares neither their number nor that of the numbers of
+    /// cells with the dimension.
     void
     check_box(const GeometryParameters &geometry, const unsigned int dim)
     {
@@ -197,14 +192,12 @@ namespace Viscoplastic
 
 
 
-    /**
-     * Turn the cells of a coarse mesh so that each line runs the same way in
-     * all of them; what that is not possible for (a Moebius strip) stays. Where
-     * lines run against each other
-     * (in a quarter of a ball), p4est keeps the balance of refined meshes in 3D
-     * differently from deal.II, whose cells are then no longer those of p4est:
-     * some refinements end in a crash.
-     */
+    /// Turn the cells of a coarse mesh so that each line runs the same way in
+    /// all of them; what that is not possible for (a Moebius strip) stays.
+    /// Where lines run against each other (in a quarter of a ball), p4est keeps
+    /// the balance of refined meshes in 3D differently from deal.II, whose
+    /// cells are then no longer those of p4est: some refinements end in a
+    /// crash.
     void
     orient_cells(parallel::distributed::Triangulation<3> &triangulation)
     {
@@ -380,10 +373,5 @@ namespace Viscoplastic
 
 
 
-  template void
-  generate_mesh(const GeometryParameters &,
-                parallel::distributed::Triangulation<2> &);
-  template void
-  generate_mesh(const GeometryParameters &,
-                parallel::distributed::Triangulation<3> &);
+  VISCOPLASTIC_INSTANTIATE(generate_mesh);
 } // namespace Viscoplastic

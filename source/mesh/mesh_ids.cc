@@ -2,13 +2,12 @@
 #include <deal.II/base/function_parser.h>
 
 #include <viscoplastic_contact/base/expression.h>
-#include <viscoplastic_contact/base/ids.h>
+#include <viscoplastic_contact/base/types.h>
 #include <viscoplastic_contact/mesh/mesh_ids.h>
 
 #include <cmath>
 #include <memory>
 #include <sstream>
-#include <string>
 
 namespace Viscoplastic
 {
@@ -135,18 +134,7 @@ namespace Viscoplastic
 
 
 
-  template void
-  set_ids(const GeometryParameters &,
-          parallel::distributed::Triangulation<2> &);
-  template void
-  set_ids(const GeometryParameters &,
-          parallel::distributed::Triangulation<3> &);
-  template std::set<types::boundary_id>
-  boundary_ids(const parallel::distributed::Triangulation<2> &);
-  template std::set<types::boundary_id>
-  boundary_ids(const parallel::distributed::Triangulation<3> &);
-  template std::set<types::material_id>
-  material_ids(const parallel::distributed::Triangulation<2> &);
-  template std::set<types::material_id>
-  material_ids(const parallel::distributed::Triangulation<3> &);
+  VISCOPLASTIC_INSTANTIATE(set_ids);
+  VISCOPLASTIC_INSTANTIATE(boundary_ids);
+  VISCOPLASTIC_INSTANTIATE(material_ids);
 } // namespace Viscoplastic

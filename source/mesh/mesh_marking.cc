@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <viscoplastic_contact/base/types.h>
 #include <viscoplastic_contact/mesh/cell_order.h>
 #include <viscoplastic_contact/mesh/marking_threshold.h>
 #include <viscoplastic_contact/mesh/mesh_marking.h>
@@ -32,10 +33,8 @@ namespace Viscoplastic
 
 
 
-    /**
-     * Flag the cells with the largest estimates that make up a fraction of
-     * their sum for refinement, and those with the smallest for coarsening.
-     */
+    /// Flag the cells with the largest estimates that make up a fraction of
+    /// their sum for refinement, and those with the smallest for coarsening.
     template <int dim>
     void
     flag_fractions(parallel::distributed::Triangulation<dim> &triangulation,
@@ -84,10 +83,8 @@ namespace Viscoplastic
 
 
 
-    /**
-     * Withdraw the smallest of the marked cells until at most @p n_allowed of
-     * all ranks are left.
-     */
+    /// Withdraw the smallest of the marked cells until at most @p n_allowed of
+    /// all ranks are left.
     template <int dim>
     void
     limit_refinement(parallel::distributed::Triangulation<dim> &triangulation,
@@ -236,26 +233,6 @@ namespace Viscoplastic
 
 
 
-  template bool
-  mark_cells<2>(parallel::distributed::Triangulation<2> &,
-                const Vector<double> &,
-                const RefinementParameters &,
-                const std::function<void()> &);
-  template bool
-  mark_cells<3>(parallel::distributed::Triangulation<3> &,
-                const Vector<double> &,
-                const RefinementParameters &,
-                const std::function<void()> &);
-  template bool
-  mark_cells_to_tolerance<2>(parallel::distributed::Triangulation<2> &,
-                             const Vector<double> &,
-                             const RefinementParameters &,
-                             const double,
-                             const std::function<void()> &);
-  template bool
-  mark_cells_to_tolerance<3>(parallel::distributed::Triangulation<3> &,
-                             const Vector<double> &,
-                             const RefinementParameters &,
-                             const double,
-                             const std::function<void()> &);
+  VISCOPLASTIC_INSTANTIATE(mark_cells);
+  VISCOPLASTIC_INSTANTIATE(mark_cells_to_tolerance);
 } // namespace Viscoplastic

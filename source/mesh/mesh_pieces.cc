@@ -4,6 +4,7 @@
 #include <deal.II/fe/fe_nothing.h>
 #include <deal.II/fe/fe_values.h>
 
+#include <viscoplastic_contact/base/types.h>
 #include <viscoplastic_contact/mesh/mesh_pieces.h>
 
 #include <algorithm>
@@ -143,24 +144,7 @@ namespace Viscoplastic
 
 
 
-  template PieceNormal<2>
-  piece_normal(const parallel::distributed::Triangulation<2> &,
-               const types::boundary_id);
-  template PieceNormal<3>
-  piece_normal(const parallel::distributed::Triangulation<3> &,
-               const types::boundary_id);
-  template double
-  largest_angle(const parallel::distributed::Triangulation<2> &,
-                const types::boundary_id);
-  template double
-  largest_angle(const parallel::distributed::Triangulation<3> &,
-                const types::boundary_id);
-  template bool
-  faces_towards(const parallel::distributed::Triangulation<2> &,
-                const types::boundary_id,
-                const Tensor<1, 2> &);
-  template bool
-  faces_towards(const parallel::distributed::Triangulation<3> &,
-                const types::boundary_id,
-                const Tensor<1, 3> &);
+  VISCOPLASTIC_INSTANTIATE(piece_normal);
+  VISCOPLASTIC_INSTANTIATE(largest_angle);
+  VISCOPLASTIC_INSTANTIATE(faces_towards);
 } // namespace Viscoplastic

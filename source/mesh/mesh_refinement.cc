@@ -1,21 +1,17 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <deal.II/base/mpi.h>
-#include <deal.II/base/utilities.h>
 #include <deal.II/grid/grid_tools.h>
 
 #include <viscoplastic_contact/base/messages.h>
 #include <viscoplastic_contact/base/spelling.h>
+#include <viscoplastic_contact/base/types.h>
 #include <viscoplastic_contact/mesh/mesh_ids.h>
 #include <viscoplastic_contact/mesh/mesh_refinement.h>
 #include <viscoplastic_contact/mesh/mesh_size.h>
 
-#include <algorithm>
 #include <cmath>
 #include <map>
 #include <regex>
-#include <set>
-#include <string>
-#include <vector>
 
 namespace Viscoplastic
 {
@@ -289,20 +285,7 @@ namespace Viscoplastic
 
 
 
-  template void
-  refine_mesh(const GeometryParameters &,
-              parallel::distributed::Triangulation<2> &);
-  template void
-  refine_mesh(const GeometryParameters &,
-              parallel::distributed::Triangulation<3> &);
-  template void
-  refine_like(const parallel::distributed::Triangulation<2> &,
-              parallel::distributed::Triangulation<2> &);
-  template void
-  refine_like(const parallel::distributed::Triangulation<3> &,
-              parallel::distributed::Triangulation<3> &);
-  template void
-  prepare_mesh_change(parallel::distributed::Triangulation<2> &);
-  template void
-  prepare_mesh_change(parallel::distributed::Triangulation<3> &);
+  VISCOPLASTIC_INSTANTIATE(refine_mesh);
+  VISCOPLASTIC_INSTANTIATE(refine_like);
+  VISCOPLASTIC_INSTANTIATE(prepare_mesh_change);
 } // namespace Viscoplastic

@@ -3,6 +3,7 @@
 #include <deal.II/base/mpi.h>
 #include <deal.II/grid/grid_tools.h>
 
+#include <viscoplastic_contact/base/types.h>
 #include <viscoplastic_contact/mesh/mesh_size.h>
 
 #include <sys/resource.h>
@@ -110,8 +111,5 @@ namespace Viscoplastic
 
 
 
-  template double
-  body_diagonal(const Triangulation<2> &);
-  template double
-  body_diagonal(const Triangulation<3> &);
+  VISCOPLASTIC_INSTANTIATE(body_diagonal);
 } // namespace Viscoplastic

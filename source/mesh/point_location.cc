@@ -3,13 +3,13 @@
 #include <deal.II/fe/mapping_q1.h>
 #include <deal.II/numerics/rtree.h>
 
+#include <viscoplastic_contact/base/types.h>
 #include <viscoplastic_contact/mesh/cell_order.h>
 #include <viscoplastic_contact/mesh/point_location.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <sstream>
 
 namespace Viscoplastic
@@ -373,20 +373,7 @@ namespace Viscoplastic
 
 
 
-#define INSTANTIATE(dim)                                           \
-  template PointLocations<dim> locate_points<dim>(                 \
-    const Triangulation<dim> &,                                    \
-    const std::vector<Point<dim>> &,                               \
-    const MaterialFilter &);                                       \
-  template PointLocations<dim> locate_on_boundary<dim>(            \
-    const Triangulation<dim> &,                                    \
-    const std::vector<Point<dim>> &,                               \
-    const std::set<types::boundary_id> &);                         \
-  template void check_points<dim>(const Triangulation<dim> &,      \
-                                  const std::vector<Point<dim>> &, \
-                                  const std::string &);
-
-  INSTANTIATE(2)
-  INSTANTIATE(3)
-#undef INSTANTIATE
+  VISCOPLASTIC_INSTANTIATE(locate_points);
+  VISCOPLASTIC_INSTANTIATE(locate_on_boundary);
+  VISCOPLASTIC_INSTANTIATE(check_points);
 } // namespace Viscoplastic

@@ -10,7 +10,6 @@
 #include <cstdlib>
 #include <map>
 #include <set>
-#include <vector>
 
 namespace Viscoplastic
 {

@@ -11,7 +11,6 @@
 #include <map>
 #include <set>
 #include <sstream>
-#include <vector>
 
 namespace Viscoplastic
 {
@@ -117,11 +116,9 @@ namespace Viscoplastic
 
 
 
-    /**
-     * What is in a subsection, entries first. A paragraph about an entry that
-     * begins with the name of a subsection and a colon is about that
-     * subsection: so the texts of laws come to their parameters.
-     */
+    /// What is in a subsection, entries first. A paragraph about an entry that
+    /// begins with the name of a subsection and a colon is about that
+    /// subsection: so the texts of laws come to their parameters.
     std::vector<Item>
     items(const Tree &section)
     {

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <deal.II/base/patterns.h>
-#include <deal.II/base/utilities.h>
 
 #include <viscoplastic_contact/base/messages.h>
 #include <viscoplastic_contact/base/spelling.h>
@@ -12,11 +11,6 @@
 #include <viscoplastic_contact/parameters/table_sections.h>
 #include <viscoplastic_contact/parameters/wrong_lines.h>
 
-#include <algorithm>
-#include <functional>
-#include <limits>
-#include <regex>
-#include <set>
 #include <sstream>
 
 namespace Viscoplastic

@@ -3,8 +3,8 @@
 #include <deal.II/base/patterns.h>
 #include <deal.II/base/utilities.h>
 
-#include <viscoplastic_contact/base/ids.h>
 #include <viscoplastic_contact/base/spelling.h>
+#include <viscoplastic_contact/base/types.h>
 #include <viscoplastic_contact/parameters/parameter_text.h>
 
 #include <nlohmann/json.hpp>

@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <viscoplastic_contact/discretization/initial_state.h>
-#include <viscoplastic_contact/laws/strain.h>
 #include <viscoplastic_contact/results/body_fields.h>
-
-#include <cmath>
 
 namespace Viscoplastic
 {

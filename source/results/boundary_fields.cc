@@ -1,11 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <deal.II/lac/la_parallel_vector.h>
-
 #include <viscoplastic_contact/base/number_range.h>
 #include <viscoplastic_contact/discretization/held_traction.h>
 #include <viscoplastic_contact/results/boundary_fields.h>
-
-#include <algorithm>
 
 namespace Viscoplastic
 {

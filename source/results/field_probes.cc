@@ -1,10 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <deal.II/base/mpi.h>
-
 #include <viscoplastic_contact/results/field_probes.h>
-
-#include <algorithm>
-#include <limits>
 
 namespace Viscoplastic
 {

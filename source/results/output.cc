@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <deal.II/base/mpi.h>
-
 #include "vtu_output.h"
 #include <viscoplastic_contact/base/files.h>
 #include <viscoplastic_contact/base/messages.h>
@@ -13,11 +11,8 @@
 #include <viscoplastic_contact/results/line_output.h>
 #include <viscoplastic_contact/results/output.h>
 
-#include <algorithm>
 #include <chrono>
-#include <cmath>
 #include <filesystem>
-#include <fstream>
 #include <iomanip>
 #include <regex>
 #include <sstream>

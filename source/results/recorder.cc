@@ -1,17 +1,11 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <viscoplastic_contact/discretization/compatibility.h>
-#include <viscoplastic_contact/discretization/energy.h>
 #include <viscoplastic_contact/discretization/initial_state.h>
 #include <viscoplastic_contact/error/kelly_estimator.h>
 #include <viscoplastic_contact/results/recorder.h>
 #include <viscoplastic_contact/results/run_phases.h>
-#include <viscoplastic_contact/time_stepping/step_control.h>
 
-#include <algorithm>
-#include <cmath>
 #include <iomanip>
-#include <limits>
-#include <sstream>
 
 namespace Viscoplastic
 {

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <viscoplastic_contact/base/files.h>
-#include <viscoplastic_contact/base/json_text.h>
 #include <viscoplastic_contact/base/table.h>
 #include <viscoplastic_contact/base/version.h>
 #include <viscoplastic_contact/results/line_output.h>
@@ -10,7 +9,6 @@
 
 #include <ctime>
 #include <filesystem>
-#include <fstream>
 #include <regex>
 #include <sstream>
 
@@ -232,18 +230,5 @@ namespace Viscoplastic
 
 
 
-  template void
-  write_record<2>(const Scene<2> &,
-                  const std::string &,
-                  const unsigned int,
-                  const RunSummary<2> *,
-                  const RunCosts *,
-                  const std::vector<std::string> &);
-  template void
-  write_record<3>(const Scene<3> &,
-                  const std::string &,
-                  const unsigned int,
-                  const RunSummary<3> *,
-                  const RunCosts *,
-                  const std::vector<std::string> &);
+  VISCOPLASTIC_INSTANTIATE(write_record);
 } // namespace Viscoplastic

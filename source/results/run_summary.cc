@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <viscoplastic_contact/base/files.h>
+#include <viscoplastic_contact/base/messages.h>
+#include <viscoplastic_contact/base/types.h>
 #include <viscoplastic_contact/results/run_phases.h>
 #include <viscoplastic_contact/results/run_summary.h>
 
-#include <cmath>
 #include <iomanip>
 #include <sstream>
 
@@ -11,16 +12,6 @@ namespace Viscoplastic
 {
   namespace
   {
-    std::string
-    number(const double value)
-    {
-      std::ostringstream text;
-      text << std::setprecision(5) << value;
-      return text.str();
-    }
-
-
-
     void
     print_row(std::ostream      &out,
               const std::string &name,
@@ -372,14 +363,5 @@ namespace Viscoplastic
 
   template struct RunSummary<2>;
   template struct RunSummary<3>;
-  template void
-  write_uncertainties(const std::string &,
-                      const Units &,
-                      const RunSummary<2> &,
-                      const RunSummary<2> &);
-  template void
-  write_uncertainties(const std::string &,
-                      const Units &,
-                      const RunSummary<3> &,
-                      const RunSummary<3> &);
+  VISCOPLASTIC_INSTANTIATE(write_uncertainties);
 } // namespace Viscoplastic

@@ -2,7 +2,6 @@
 #include <deal.II/base/exceptions.h>
 
 #include <viscoplastic_contact/base/files.h>
-#include <viscoplastic_contact/base/units.h>
 #include <viscoplastic_contact/results/statistics.h>
 
 #include <cmath>

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <viscoplastic_contact/results/recorder.h>
 #include <viscoplastic_contact/results/run_phases.h>
-
-#include <cmath>
+#include <viscoplastic_contact/results/unit_labels.h>
 
 // What a run records of each step; doc/results.md tells what it means.
 
@@ -74,6 +73,122 @@ namespace Viscoplastic
               estimate.velocity_variation,
               Quantity::rate_norm);
     }
+
+
+
+    StatisticsRow::AtEnd
+    printed_if(const bool condition)
+    {
+      return condition ? StatisticsRow::AtEnd::printed :
+                         StatisticsRow::AtEnd::absent;
+    }
+
+
+
+    /// What contact and friction of the step are like.
+    template <int dim>
+    void
+    add_contact(const Scene<dim>          &scene,
+                const ContactFace<dim>    &face,
+                const AcceptedStep<dim>   &step,
+                const StepQuantities<dim> &quantities,
+                StatisticsRow             &row)
+    {
+      using AtEnd                        = StatisticsRow::AtEnd;
+      const FrictionIdentities &friction = quantities.friction;
+      const auto                add_force =
+        [&row](const std::string &name, const auto &force, const AtEnd at_end) {
+          row.add_vector(name, force, dim, Quantity::force, at_end);
+        };
+      row.add("duality_gap", step.report.duality_gap, Quantity::energy);
+      row.add("algebraic_error", step.report.relative_error);
+      row.add("stick_area", friction.stick_area, Quantity::area);
+      row.add("slip_area",
+              friction.slip_area,
+              Quantity::area,
+              scene.has_friction() ? AtEnd::compared : AtEnd::absent);
+      add_force("friction_force",
+                quantities.friction_force,
+                printed_if(scene.has_friction()));
+      if (face.has_obstacles())
+        {
+          const NormalContact<dim> &contact = quantities.contact;
+          add_force("contact_force", contact.force, AtEnd::printed);
+          row.add("contact_area",
+                  contact.contact_area,
+                  Quantity::area,
+                  AtEnd::printed);
+          row.add("max_pressure", contact.max_pressure, Quantity::stress);
+          row.add("max_gap", contact.max_gap, Quantity::length);
+          if (face.gives_way())
+            row.add("max_penetration",
+                    contact.max_penetration,
+                    Quantity::length);
+          if (face.has_computed_pressure() &&
+              scene.parameters.solver.coulomb_pressure !=
+                CoulombPressure::lagged)
+            {
+              row.add("bound_iterations", step.report.bound_iterations);
+              row.add("contraction", step.report.contraction);
+            }
+          else if (face.has_computed_pressure())
+            row.add("bound_lag",
+                    quantities.friction_bounds.sum > 0. ?
+                      quantities.friction_bounds.missed /
+                        quantities.friction_bounds.sum :
+                      0.);
+        }
+      for (const auto &[id, forces] : quantities.contact_forces)
+        {
+          const BoundaryCondition<dim> &condition = scene.boundary.at(id);
+          if (condition.has_friction())
+            add_force("friction_force_" + std::to_string(id),
+                      forces.friction,
+                      AtEnd::printed);
+          if (condition.is_unilateral())
+            add_force("contact_force_" + std::to_string(id),
+                      forces.contact,
+                      AtEnd::printed);
+        }
+    }
+
+
+
+    template <int dim>
+    void
+    add_energies(const Discretization<dim> &d,
+                 const Forces<dim>         &forces,
+                 const StepQuantities<dim> &quantities,
+                 const EnergyBalance       &balance,
+                 StatisticsRow             &row)
+    {
+      const Scene<dim> &scene      = d.scene();
+      const auto        add_energy = [&row](const std::string &name,
+                                     const double       energy) {
+        row.add(name, energy, Quantity::energy, StatisticsRow::AtEnd::printed);
+      };
+      add_energy("stored_energy", balance.stored_energy());
+      row.add("strain_energy",
+              forces.strain_energy - quantities.spring_energy,
+              Quantity::energy);
+      if (d.springs)
+        row.add("spring_energy", quantities.spring_energy, Quantity::energy);
+      if (scene.has_viscosity())
+        add_energy("viscous_dissipation", balance.viscous_dissipation());
+      if (d.face)
+        row.add("friction_dissipation",
+                balance.friction_dissipation(),
+                Quantity::energy,
+                printed_if(scene.has_friction()));
+      add_energy("external_work", balance.external_work());
+      if (scene.has_thermal_strain())
+        add_energy("thermal_work", balance.thermal_work());
+      if (scene.is_adaptive())
+        add_energy("adaptation_energy", balance.adaptation_energy());
+      if (scene.has_stages())
+        add_energy("construction_energy", balance.construction_energy());
+      add_energy("energy_balance_defect", balance.defect());
+    }
   } // namespace
 
 
@@ -84,9 +199,7 @@ namespace Viscoplastic
                      const StepQuantities<dim> &quantities,
                      const SolutionErrors      &errors)
   {
-    using AtEnd = StatisticsRow::AtEnd;
-    const AtEnd of_friction =
-      scene.has_friction() ? AtEnd::printed : AtEnd::absent;
+    using AtEnd                          = StatisticsRow::AtEnd;
     const Discretization<dim> &d         = *discretization;
     const TimeStep            &time_step = step.time_step;
     const StressSummary<dim>  &stress    = quantities.stress;
@@ -121,68 +234,7 @@ namespace Viscoplastic
     row.add("linear_iterations", step.report.linear_iterations);
     row.add("unchanged", step.is_unchanged);
     if (d.face)
-      {
-        row.add("duality_gap", step.report.duality_gap, Quantity::energy);
-        row.add("algebraic_error", step.report.relative_error);
-        row.add("stick_area", friction.stick_area, Quantity::area);
-        row.add("slip_area",
-                friction.slip_area,
-                Quantity::area,
-                scene.has_friction() ? AtEnd::compared : AtEnd::absent);
-        row.add_vector("friction_force",
-                       quantities.friction_force,
-                       dim,
-                       Quantity::force,
-                       of_friction);
-        if (d.face->has_obstacles())
-          {
-            const NormalContact<dim> &contact = quantities.contact;
-            row.add_vector("contact_force",
-                           contact.force,
-                           dim,
-                           Quantity::force,
-                           AtEnd::printed);
-            row.add("contact_area",
-                    contact.contact_area,
-                    Quantity::area,
-                    AtEnd::printed);
-            row.add("max_pressure", contact.max_pressure, Quantity::stress);
-            row.add("max_gap", contact.max_gap, Quantity::length);
-            if (d.face->gives_way())
-              row.add("max_penetration",
-                      contact.max_penetration,
-                      Quantity::length);
-            if (d.face->has_computed_pressure() &&
-                scene.parameters.solver.coulomb_pressure !=
-                  CoulombPressure::lagged)
-              {
-                row.add("bound_iterations", step.report.bound_iterations);
-                row.add("contraction", step.report.contraction);
-              }
-            else if (d.face->has_computed_pressure())
-              row.add("bound_lag",
-                      quantities.friction_bounds.sum > 0. ?
-                        quantities.friction_bounds.missed /
-                          quantities.friction_bounds.sum :
-                        0.);
-          }
-      }
-    for (const auto &[id, forces] : quantities.contact_forces)
-      {
-        const BoundaryCondition<dim> &condition = scene.boundary.at(id);
-        if (condition.has_friction())
-          row.add_vector("friction_force_" + std::to_string(id),
-                         forces.friction,
-                         dim,
-                         Quantity::force,
-                         AtEnd::printed);
-        if (condition.is_unilateral())
-          row.add_vector("contact_force_" + std::to_string(id),
-                         forces.contact,
-                         dim,
-                         Quantity::force,
-                         AtEnd::printed);
-      }
+      add_contact(scene, *d.face, step, quantities, row);
     for (const auto &[id, force] : quantities.reactions)
       row.add_vector("reaction_" + name_in_columns(id),
                      force,
@@ -209,48 +261,7 @@ namespace Viscoplastic
         row.add("max_slip", friction.max_slip, Quantity::length);
         row.add("slip_misalignment", friction.slip_misalignment);
       }
-    row.add("stored_energy",
-            balance.stored_energy(),
-            Quantity::energy,
-            AtEnd::printed);
-    row.add("strain_energy",
-            forces.strain_energy - quantities.spring_energy,
-            Quantity::energy);
-    if (d.springs)
-      row.add("spring_energy", quantities.spring_energy, Quantity::energy);
-    if (scene.has_viscosity())
-      row.add("viscous_dissipation",
-              balance.viscous_dissipation(),
-              Quantity::energy,
-              AtEnd::printed);
-    if (d.face)
-      row.add("friction_dissipation",
-              balance.friction_dissipation(),
-              Quantity::energy,
-              of_friction);
-    row.add("external_work",
-            balance.external_work(),
-            Quantity::energy,
-            AtEnd::printed);
-    if (scene.has_thermal_strain())
-      row.add("thermal_work",
-              balance.thermal_work(),
-              Quantity::energy,
-              AtEnd::printed);
-    if (scene.is_adaptive())
-      row.add("adaptation_energy",
-              balance.adaptation_energy(),
-              Quantity::energy,
-              AtEnd::printed);
-    if (scene.has_stages())
-      row.add("construction_energy",
-              balance.construction_energy(),
-              Quantity::energy,
-              AtEnd::printed);
-    row.add("energy_balance_defect",
-            balance.defect(),
-            Quantity::energy,
-            AtEnd::printed);
+    add_energies(d, forces, quantities, balance, row);
     row.add("max_displacement",
             quantities.max_displacement,
             Quantity::length,

@@ -1,16 +1,9 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <deal.II/base/mpi.h>
-#include <deal.II/base/utilities.h>
-
 #include <viscoplastic_contact/base/largest_place.h>
 #include <viscoplastic_contact/base/number_range.h>
 #include <viscoplastic_contact/discretization/initial_state.h>
 #include <viscoplastic_contact/error/kelly_estimator.h>
 #include <viscoplastic_contact/results/step_quantities.h>
-
-#include <algorithm>
-#include <cmath>
-#include <limits>
 
 namespace Viscoplastic
 {
@@ -215,16 +208,6 @@ namespace Viscoplastic
 
 
 
-  template StepQuantities<2>
-  measure_step(const Discretization<2> &,
-               const EvaluatedState<2> &,
-               const AcceptedStep<2> &);
-  template StepQuantities<3>
-  measure_step(const Discretization<3> &,
-               const EvaluatedState<3> &,
-               const AcceptedStep<3> &);
-  template EnergiesOnMesh
-  energies_on_mesh(const Discretization<2> &, const EvaluatedState<2> &);
-  template EnergiesOnMesh
-  energies_on_mesh(const Discretization<3> &, const EvaluatedState<3> &);
+  VISCOPLASTIC_INSTANTIATE(measure_step);
+  VISCOPLASTIC_INSTANTIATE(energies_on_mesh);
 } // namespace Viscoplastic

@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <viscoplastic_contact/results/unit_labels.h>
 
-#include <utility>
-#include <vector>
-
 namespace Viscoplastic
 {
   namespace
@@ -127,12 +124,6 @@ namespace Viscoplastic
 
 
 
-  template Quantity
-  quantity_of_estimator(const Scene<2> &);
-  template Quantity
-  quantity_of_estimator(const Scene<3> &);
-  template std::string
-  label_of_field(const Scene<2> &, const std::string &);
-  template std::string
-  label_of_field(const Scene<3> &, const std::string &);
+  VISCOPLASTIC_INSTANTIATE(quantity_of_estimator);
+  VISCOPLASTIC_INSTANTIATE(label_of_field);
 } // namespace Viscoplastic

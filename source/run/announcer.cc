@@ -1,12 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <deal.II/base/mpi.h>
-
 #include <viscoplastic_contact/base/spelling.h>
 #include <viscoplastic_contact/base/version.h>
 #include <viscoplastic_contact/discretization/compatibility.h>
 #include <viscoplastic_contact/run/announcer.h>
-
-#include <sstream>
 
 namespace Viscoplastic
 {

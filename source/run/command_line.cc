@@ -4,7 +4,7 @@
 #include <deal.II/base/exceptions.h>
 #include <deal.II/base/utilities.h>
 
-#include <viscoplastic_contact/base/resources.h>
+#include <viscoplastic_contact/base/files.h>
 #include <viscoplastic_contact/base/spelling.h>
 #include <viscoplastic_contact/base/version.h>
 #include <viscoplastic_contact/run/command_line.h>

@@ -1,34 +1,17 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <deal.II/base/mpi.h>
-
-#include <viscoplastic_contact/laws/strain.h>
+#include <viscoplastic_contact/base/messages.h>
 #include <viscoplastic_contact/mesh/mesh_size.h>
 #include <viscoplastic_contact/run/plausibility.h>
 #include <viscoplastic_contact/scene/sample_places.h>
 
 #include <boost/property_tree/ptree.hpp>
 
-#include <algorithm>
-#include <cmath>
-#include <iomanip>
 #include <limits>
-#include <optional>
-#include <sstream>
 
 namespace Viscoplastic
 {
   namespace
   {
-    std::string
-    number(const double value)
-    {
-      std::ostringstream text;
-      text << std::setprecision(5) << value;
-      return text.str();
-    }
-
-
-
     /// The least and the largest value of something.
     struct ValueRange
     {
@@ -430,15 +413,7 @@ namespace Viscoplastic
 
 
 
-#define INSTANTIATE(dim)                                                    \
-  template LargestStress largest_given_stress(const Discretization<dim> &); \
-  template void          describe_materials(const Discretization<dim> &,    \
-                                            const LargestStress &,          \
-                                            std::ostream &);                \
-  template std::vector<std::string> implausible_data(                       \
-    const Discretization<dim> &, const LargestStress &);
-
-  INSTANTIATE(2)
-  INSTANTIATE(3)
-#undef INSTANTIATE
+  VISCOPLASTIC_INSTANTIATE(largest_given_stress);
+  VISCOPLASTIC_INSTANTIATE(describe_materials);
+  VISCOPLASTIC_INSTANTIATE(implausible_data);
 } // namespace Viscoplastic

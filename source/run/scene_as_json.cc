@@ -2,9 +2,7 @@
 #include <deal.II/distributed/tria.h>
 #include <deal.II/grid/grid_tools.h>
 
-#include <viscoplastic_contact/base/expression.h>
 #include <viscoplastic_contact/base/files.h>
-#include <viscoplastic_contact/base/json_text.h>
 #include <viscoplastic_contact/base/spelling.h>
 #include <viscoplastic_contact/base/table.h>
 #include <viscoplastic_contact/base/version.h>
@@ -16,8 +14,6 @@
 
 #include <boost/crc.hpp>
 #include <nlohmann/json.hpp>
-
-#include <cmath>
 
 namespace Viscoplastic
 {

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <deal.II/base/mpi.h>
-#include <deal.II/base/utilities.h>
 #include <deal.II/fe/fe_q.h>
 
 #include <viscoplastic_contact/base/messages.h>
@@ -8,17 +6,11 @@
 #include <viscoplastic_contact/discretization/initial_state.h>
 #include <viscoplastic_contact/error/known_solution.h>
 #include <viscoplastic_contact/error/solution_errors.h>
-#include <viscoplastic_contact/linear_solvers/solver_choice.h>
 #include <viscoplastic_contact/mesh/mesh.h>
 #include <viscoplastic_contact/results/recorder.h>
 #include <viscoplastic_contact/run/plausibility.h>
 #include <viscoplastic_contact/run/scene_check.h>
-#include <viscoplastic_contact/scene/kinks_in_time.h>
 #include <viscoplastic_contact/time_stepping/explicit_step.h>
-
-#include <algorithm>
-#include <cmath>
-#include <sstream>
 
 namespace Viscoplastic
 {
@@ -321,36 +313,9 @@ namespace Viscoplastic
 
 
 
-  template void
-  make_first_mesh(Scene<2> &,
-                  parallel::distributed::Triangulation<2> &,
-                  StepControl &,
-                  Announcer<2> *);
-  template void
-  check_stages(const FiniteElement<2> &, DoFHandler<2> &, Scene<2> &);
-  template void
-  check_compatibility(const Discretization<2> &, State<2> &, const Load<2> &);
-  template void
-  check_steps(const Discretization<2> &,
-              const StepControl &,
-              Console &,
-              EvaluatedState<2> &);
-  template void
-  check_scene<2>(const Parameters &, Console &);
-  template void
-  make_first_mesh(Scene<3> &,
-                  parallel::distributed::Triangulation<3> &,
-                  StepControl &,
-                  Announcer<3> *);
-  template void
-  check_stages(const FiniteElement<3> &, DoFHandler<3> &, Scene<3> &);
-  template void
-  check_compatibility(const Discretization<3> &, State<3> &, const Load<3> &);
-  template void
-  check_steps(const Discretization<3> &,
-              const StepControl &,
-              Console &,
-              EvaluatedState<3> &);
-  template void
-  check_scene<3>(const Parameters &, Console &);
+  VISCOPLASTIC_INSTANTIATE(make_first_mesh);
+  VISCOPLASTIC_INSTANTIATE(check_stages);
+  VISCOPLASTIC_INSTANTIATE(check_compatibility);
+  VISCOPLASTIC_INSTANTIATE(check_steps);
+  VISCOPLASTIC_INSTANTIATE(check_scene);
 } // namespace Viscoplastic

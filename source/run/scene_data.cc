@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <deal.II/base/quadrature_lib.h>
-#include <deal.II/base/utilities.h>
 #include <deal.II/distributed/tria.h>
 #include <deal.II/fe/fe_nothing.h>
 #include <deal.II/fe/fe_values.h>
 
-#include <viscoplastic_contact/base/expression.h>
 #include <viscoplastic_contact/discretization/volumetric_integration.h>
 #include <viscoplastic_contact/mesh/mesh.h>
 #include <viscoplastic_contact/mesh/plane_model.h>
@@ -13,9 +11,6 @@
 #include <viscoplastic_contact/run/scene_data.h>
 #include <viscoplastic_contact/scene/scene.h>
 
-#include <algorithm>
-#include <cmath>
-#include <functional>
 #include <iomanip>
 #include <numeric>
 #include <regex>

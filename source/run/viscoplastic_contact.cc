@@ -1,20 +1,14 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <deal.II/base/mpi.h>
 #include <deal.II/fe/fe_q.h>
 
 #include <viscoplastic_contact/base/messages.h>
 #include <viscoplastic_contact/discretization/initial_state.h>
-#include <viscoplastic_contact/error/quantity_estimator.h>
-#include <viscoplastic_contact/error/solution_errors.h>
 #include <viscoplastic_contact/mesh/mesh_refinement.h>
-#include <viscoplastic_contact/results/step_quantities.h>
 #include <viscoplastic_contact/run/scene_check.h>
 #include <viscoplastic_contact/run/state_carrier.h>
 #include <viscoplastic_contact/run/viscoplastic_contact.h>
 
-#include <algorithm>
 #include <iomanip>
-#include <sstream>
 
 namespace Viscoplastic
 {

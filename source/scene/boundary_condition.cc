@@ -1,10 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <deal.II/base/utilities.h>
-
 #include <viscoplastic_contact/base/spelling.h>
 #include <viscoplastic_contact/scene/boundary_condition.h>
-
-#include <algorithm>
 
 namespace Viscoplastic
 {

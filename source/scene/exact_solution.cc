@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <deal.II/base/utilities.h>
-
 #include <viscoplastic_contact/mesh/plane_model.h>
 #include <viscoplastic_contact/scene/exact_solution.h>
 

@@ -2,10 +2,6 @@
 #include <viscoplastic_contact/scene/jump_in_time.h>
 #include <viscoplastic_contact/scene/sample_places.h>
 
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <set>
 #include <sstream>
 
 namespace Viscoplastic
@@ -372,17 +368,7 @@ namespace Viscoplastic
 
 
 
-#define INSTANTIATE(dim)                                                    \
-  template std::optional<double> find_jump(const Expression<dim> &,         \
-                                           const std::vector<Point<dim>> &, \
-                                           const TimeSchedule &);           \
-  template std::optional<double> find_unseen_change(                        \
-    const Expression<dim> &,                                                \
-    const std::vector<Point<dim>> &,                                        \
-    const TimeSchedule &);                                                  \
-  template std::vector<std::string> warnings_of_data_in_time(               \
-    const Scene<dim> &, const Triangulation<dim> &);
-
-  INSTANTIATE(2)
-  INSTANTIATE(3)
+  VISCOPLASTIC_INSTANTIATE(find_jump);
+  VISCOPLASTIC_INSTANTIATE(find_unseen_change);
+  VISCOPLASTIC_INSTANTIATE(warnings_of_data_in_time);
 } // namespace Viscoplastic

@@ -2,10 +2,7 @@
 #include <viscoplastic_contact/scene/kinks_in_time.h>
 #include <viscoplastic_contact/scene/sample_places.h>
 
-#include <algorithm>
-#include <cmath>
 #include <numeric>
-#include <set>
 
 namespace Viscoplastic
 {

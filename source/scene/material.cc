@@ -1,13 +1,10 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <deal.II/base/utilities.h>
-
 #include <viscoplastic_contact/base/messages.h>
 #include <viscoplastic_contact/base/number_range.h>
 #include <viscoplastic_contact/base/subsection.h>
 #include <viscoplastic_contact/laws/arrhenius.h>
 #include <viscoplastic_contact/scene/material.h>
 
-#include <cmath>
 #include <limits>
 #include <sstream>
 

@@ -165,13 +165,5 @@ namespace Viscoplastic
 
   template struct OutputLine<2>;
   template struct OutputLine<3>;
-
-
-
-  template std::vector<std::string>
-  check_output_places(const Scene<2> &,
-                      const parallel::distributed::Triangulation<2> &);
-  template std::vector<std::string>
-  check_output_places(const Scene<3> &,
-                      const parallel::distributed::Triangulation<3> &);
+  VISCOPLASTIC_INSTANTIATE(check_output_places);
 } // namespace Viscoplastic

@@ -1,13 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <deal.II/base/exceptions.h>
-#include <deal.II/base/utilities.h>
-
-#include <viscoplastic_contact/base/expression.h>
 #include <viscoplastic_contact/base/messages.h>
 #include <viscoplastic_contact/base/spelling.h>
+#include <viscoplastic_contact/base/types.h>
 #include <viscoplastic_contact/scene/output_places.h>
-
-#include <algorithm>
 
 namespace Viscoplastic
 {
@@ -190,12 +185,6 @@ namespace Viscoplastic
 
 
 
-  template std::vector<Point<2>>
-  read_output_points(const std::string &);
-  template std::vector<Point<3>>
-  read_output_points(const std::string &);
-  template std::vector<OutputLine<2>>
-  read_output_lines(const std::string &);
-  template std::vector<OutputLine<3>>
-  read_output_lines(const std::string &);
+  VISCOPLASTIC_INSTANTIATE(read_output_points);
+  VISCOPLASTIC_INSTANTIATE(read_output_lines);
 } // namespace Viscoplastic

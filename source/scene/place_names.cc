@@ -1,15 +1,10 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <deal.II/base/exceptions.h>
-#include <deal.II/base/utilities.h>
-
 #include <viscoplastic_contact/base/spelling.h>
 #include <viscoplastic_contact/mesh/files/physical_names.h>
 #include <viscoplastic_contact/scene/place_names.h>
 
-#include <algorithm>
 #include <cctype>
 #include <regex>
-#include <vector>
 
 namespace Viscoplastic
 {

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <viscoplastic_contact/base/spelling.h>
+#include <viscoplastic_contact/base/types.h>
 #include <viscoplastic_contact/scene/quantity_of_interest.h>
-
-#include <vector>
 
 namespace Viscoplastic
 {
@@ -69,16 +68,5 @@ namespace Viscoplastic
 
 
 
-  template QuantityOfInterest
-  quantity_of_interest<2>(
-    const std::string &,
-    const std::map<types::boundary_id, BoundaryCondition<2>> &,
-    const unsigned int,
-    const std::optional<QuantityOfInterest::Kind>);
-  template QuantityOfInterest
-  quantity_of_interest<3>(
-    const std::string &,
-    const std::map<types::boundary_id, BoundaryCondition<3>> &,
-    const unsigned int,
-    const std::optional<QuantityOfInterest::Kind>);
+  VISCOPLASTIC_INSTANTIATE(quantity_of_interest);
 } // namespace Viscoplastic

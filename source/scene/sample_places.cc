@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <deal.II/base/quadrature_lib.h>
 
+#include <viscoplastic_contact/base/types.h>
 #include <viscoplastic_contact/scene/sample_places.h>
 
 #include <algorithm>
@@ -87,16 +88,7 @@ namespace Viscoplastic
 
 
 
-  template std::vector<Point<2>>
-  places_on_boundary(const Triangulation<2> &, const types::boundary_id);
-  template std::vector<Point<2>>
-  places_in_body(const Triangulation<2> &);
-  template std::vector<double>
-  values_at(const Expression<2> &, const std::vector<Point<2>> &, const double);
-  template std::vector<Point<3>>
-  places_on_boundary(const Triangulation<3> &, const types::boundary_id);
-  template std::vector<Point<3>>
-  places_in_body(const Triangulation<3> &);
-  template std::vector<double>
-  values_at(const Expression<3> &, const std::vector<Point<3>> &, const double);
+  VISCOPLASTIC_INSTANTIATE(places_on_boundary);
+  VISCOPLASTIC_INSTANTIATE(places_in_body);
+  VISCOPLASTIC_INSTANTIATE(values_at);
 } // namespace Viscoplastic

@@ -1,14 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <deal.II/base/utilities.h>
-
 #include <viscoplastic_contact/base/messages.h>
 #include <viscoplastic_contact/base/spelling.h>
 #include <viscoplastic_contact/laws/strain.h>
 #include <viscoplastic_contact/scene/scene.h>
-
-#include <algorithm>
-#include <cmath>
-#include <sstream>
 
 namespace Viscoplastic
 {

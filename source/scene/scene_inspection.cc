@@ -10,7 +10,6 @@
 #include <viscoplastic_contact/scene/sample_places.h>
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 #include <sstream>
 

@@ -1,13 +1,10 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <deal.II/base/utilities.h>
-
 #include <viscoplastic_contact/base/messages.h>
 #include <viscoplastic_contact/base/spelling.h>
 #include <viscoplastic_contact/mesh/mesh_ids.h>
 #include <viscoplastic_contact/mesh/mesh_size.h>
 #include <viscoplastic_contact/scene/support.h>
 
-#include <algorithm>
 #include <limits>
 #include <sstream>
 
@@ -242,16 +239,6 @@ namespace Viscoplastic
 
 
 
-  template std::vector<Support<2>>
-  read_supports<2>(const SupportParameters &);
-  template std::vector<Support<3>>
-  read_supports<3>(const SupportParameters &);
-  template std::vector<std::string>
-  place_supports<2>(const parallel::distributed::Triangulation<2> &,
-                    const std::map<types::boundary_id, BoundaryCondition<2>> &,
-                    std::vector<Support<2>> &);
-  template std::vector<std::string>
-  place_supports<3>(const parallel::distributed::Triangulation<3> &,
-                    const std::map<types::boundary_id, BoundaryCondition<3>> &,
-                    std::vector<Support<3>> &);
+  VISCOPLASTIC_INSTANTIATE(read_supports);
+  VISCOPLASTIC_INSTANTIATE(place_supports);
 } // namespace Viscoplastic

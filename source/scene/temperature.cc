@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <deal.II/base/utilities.h>
-
+#include <viscoplastic_contact/base/types.h>
 #include <viscoplastic_contact/scene/temperature.h>
 
 namespace Viscoplastic
@@ -70,8 +69,5 @@ namespace Viscoplastic
 
   template class Temperature<2>;
   template class Temperature<3>;
-  template std::unique_ptr<const Temperature<2>>
-  make_temperature(const TemperatureParameters &, const Units &);
-  template std::unique_ptr<const Temperature<3>>
-  make_temperature(const TemperatureParameters &, const Units &);
+  VISCOPLASTIC_INSTANTIATE(make_temperature);
 } // namespace Viscoplastic

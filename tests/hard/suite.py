@@ -42,10 +42,6 @@ class Figure:
         return self.least <= self.value <= self.largest  # false for nan
 
     @property
-    def is_asserted(self):
-        return self.least > -math.inf or self.largest < math.inf
-
-    @property
     def bounds(self):
         if self.least == self.largest:
             return f"= {self.least:.6g}"
@@ -118,53 +114,24 @@ def run_case(one, size):
     return Outcome(one, report.figures, failure, time.monotonic() - start)
 
 
-def number(value):
-    return f"{value:.4g}"
-
-
-def nearest_to_its_bound(figures):
-    """The figure that uses most of what its bounds leave."""
-
-    def use(figure):
-        value, least, largest = figure.value, figure.least, figure.largest
-        if not figure.holds:
-            return math.inf
-        if math.isfinite(least) and math.isfinite(largest) and least < largest:
-            middle, half = (least + largest) / 2, (largest - least) / 2
-            return value / largest if least == 0 else abs(value - middle) / half
-        if least == largest:
-            return 0
-        return value / largest if math.isfinite(largest) else least / value if value else 0
-
-    return max((f for f in figures if f.is_asserted), key=use, default=None)
-
-
 def page(outcomes, origin):
     """The results as doc/hard_cases.md: a line for each case."""
     text = [
         "# Hard cases",
         "",
-        "Scenes at the edge of what the method stands, and what held in each: written by",
+        "Scenes at the edge of what the method stands, and what holds in each: written by",
         "`contrib/hard`. The scenes are in",
-        "[prm/verification/hard](../prm/verification/hard) or beside it. Of each case the",
-        "figure is shown that comes nearest to its bound; [hard_cases.csv](hard_cases.csv)",
-        "has all.",
+        "[prm/verification/hard](../prm/verification/hard) or beside it; what was measured",
+        "and the bounds are in [hard_cases.csv](hard_cases.csv).",
         "",
         f"*{origin}*",
     ]
     for group in dict.fromkeys(o.case.group for o in outcomes):
-        text += ["", f"## {group}", "", "| case | must hold | nearest to its bound |"]
-        text += ["|---|---|---|"]
+        text += ["", f"## {group}", "", "| case | holds |", "|---|---|"]
         for outcome in (o for o in outcomes if o.case.group == group):
-            worst = nearest_to_its_bound(outcome.figures)
-            shown = outcome.failure or (
-                f"{worst.name}: {number(worst.value)} ({worst.bounds})" if worst else ""
-            )
-            if not outcome.passed:
-                shown = f"**broken** {shown}"
-            cells = f"`{outcome.case.name}`", outcome.case.holds, shown
-            row = " | ".join(cells).replace("\n", " ")
-            text.append(f"| {row} |")
+            broken = "" if outcome.passed else f"**broken {outcome.failure}** "
+            holds = (broken + outcome.case.holds).replace("\n", " ")
+            text.append(f"| `{outcome.case.name}` | {holds} |")
     return "\n".join(text) + "\n"
 
 

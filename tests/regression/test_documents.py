@@ -291,19 +291,13 @@ class Quoted(TestCase):
 
     def test_hard_cases(self):
         _, *rows = rows_of(self.DOC / "hard_cases.csv")
-        values = {}
-        for _, case, figure, value, *_ in rows:
-            values.setdefault((case, figure), []).append(float(value))
-        shown = re.findall(
-            r"^\| `(\w+)` \| .* \| (.*): (\S+) \([<>]=.*\) \|$",
-            (self.DOC / "hard_cases.md").read_text(),
-            re.M,
-        )
+        shown = re.findall(r"^\| `(\w+)` \| ", (self.DOC / "hard_cases.md").read_text(), re.M)
         self.assertGreater(len(shown), 30)
-        for case, figure, value in shown:
+        self.assertEqual(shown, list(dict.fromkeys(case for _, case, *_ in rows)))
+        for group, case, figure, value, least, largest in rows:
             with self.subTest(case=case, figure=figure):
-                near = np.isclose(values.get((case, figure), np.nan), float(value), 1e-3)
-                self.assertTrue(near.any(), value)
+                self.assertGreaterEqual(float(value), float(least or "-inf"))
+                self.assertLessEqual(float(value), float(largest or "inf"))
 
     def test_benchmarks(self):
         folder = SOURCE / "benchmarks"
@@ -343,7 +337,7 @@ class Columns(unittest.TestCase):
         rows = (SOURCE / "source/results/statistics_row.cc").read_text()
         table = (SOURCE / "doc/results.md").read_text().split("## statistics.csv")[1]
         known = set(re.findall(r"`_?(\w+?)(?:_x)?`", table.split("\n## ")[0]))
-        names = re.findall(r'row\.add(?:_vector)?\(\s*"(\w+)",', rows)
+        names = re.findall(r'(?:row\.add(?:_vector)?|add_\w+)\(\s*"(\w+)",', rows)
         self.assertGreater(len(names), 50)
         self.assertEqual(set(names) - known, set())
 

@@ -192,7 +192,7 @@ class Held(TestCase):
         block = {
             **{key: value for key, value in self.BLOCK.items()},
             "Dimension": 3,
-            "Geometry/Arguments": "4, 4, 2 : 0, 0, 0 : 2, 2, 1 : true",
+            "Geometry/Arguments": "2, 2, 1 : 0, 0, 0 : 2, 2, 1 : true",
             "Boundary 0/Traction": "0.002*max(0, t - 0.3); 0; 0",
             "Boundary 2/Role": "free",
             "Boundary 3/Role": "traction",
@@ -210,6 +210,8 @@ class Held(TestCase):
         for name in ("Contact law", "Gap", "Friction law", "Friction coefficient"):
             block.pop(f"Boundary 2/{name}")
         result = run("block", block, 2, "")
+        self.assertGreater(result["cells"][-1], 4)
+        self.assertLess(result["cells"][-1], 4 * 8**2)
         area = 2 * 1
         expected = [0.002 * 0.7 * area, -0.001 * 0.7 * area]
         for name, value in zip("xy", expected):

@@ -212,6 +212,24 @@ namespace
       }
     return false;
   }
+
+
+
+  /// The corrections that the problem takes with the bounds that have come out.
+  unsigned int
+  corrections_of_given_bounds(const CoulombProblem &coulomb,
+                              const Result         &result,
+                              const bool            condensed)
+  {
+    DenseBulk bulk(coulomb.problem, condensed);
+    bulk.start_at(coulomb.problem.u_prev);
+    bulk.scale.rounding_error = 1e-13;
+    Vector<double> increment(coulomb.problem.face.n_dofs());
+    ContactState   state(result.state.bound);
+    return ContactSolver(200)
+      .solve(bulk, coulomb.problem.face, 1e-9, increment, state)
+      .iterations;
+  }
 } // namespace
 
 
@@ -233,15 +251,8 @@ TEST(CoulombSolver, SolvesAllRandomProblems)
         continue;
       // The price: corrections with the bounds that have come out.
       n_corrections += result.report.iterations;
-      DenseBulk bulk(coulomb.problem, condensed);
-      bulk.start_at(coulomb.problem.u_prev);
-      bulk.scale.rounding_error = 1e-13;
-      Vector<double> increment(coulomb.problem.face.n_dofs());
-      ContactState   state(result.state.bound);
       n_of_given_bounds +=
-        ContactSolver(200)
-          .solve(bulk, coulomb.problem.face, 1e-9, increment, state)
-          .iterations;
+        corrections_of_given_bounds(coulomb, result, condensed);
     }
   EXPECT_LT(n_corrections, 1.2 * n_of_given_bounds);
 }
@@ -281,15 +292,8 @@ TEST(CoulombSolver, SolvesWhereOneOfTwoPiecesGivesWay)
       const Result result = solve(coulomb, condensed, 1e-9);
       expect_laws(coulomb, result, 1e-7);
       n_corrections += result.report.iterations;
-      DenseBulk bulk(coulomb.problem, condensed);
-      bulk.start_at(coulomb.problem.u_prev);
-      bulk.scale.rounding_error = 1e-13;
-      Vector<double> increment(coulomb.problem.face.n_dofs());
-      ContactState   state(result.state.bound);
       n_of_given_bounds +=
-        ContactSolver(200)
-          .solve(bulk, coulomb.problem.face, 1e-9, increment, state)
-          .iterations;
+        corrections_of_given_bounds(coulomb, result, condensed);
     }
   EXPECT_LT(n_corrections, 1.2 * n_of_given_bounds);
 }

@@ -13,18 +13,14 @@ namespace Viscoplastic
 {
   using namespace dealii;
 
-  /**
-   * Where a run speaks: the standard output of rank 0, and a log file on
-   * request.
-   */
+  /// Where a run speaks: the standard output of rank 0, and a log file on
+  /// request.
   class Console
   {
   public:
-    /**
-     * @p quiet leaves the standard output alone, not the log. @p verbose:
-     * nothing is left out for brevity. Throws ExcMessage if @p log_file, unless
-     * empty, cannot be written.
-     */
+    /// @p quiet leaves the standard output alone, not the log. @p verbose:
+    /// nothing is left out for brevity. Throws ExcMessage if @p log_file,
+    /// unless empty, cannot be written.
     explicit Console(const MPI_Comm     communicator = MPI_COMM_WORLD,
                      const bool         quiet        = false,
                      const std::string &log_file     = "",

@@ -30,11 +30,9 @@ namespace Viscoplastic
   };
 
 
-  /**
-   * A muParser function of @p variables, e.g. "x,y,t", of which the last is
-   * what set_time() sets. @p entry names the parameter in error messages.
-   * Throws ExpressionError when @p text cannot be parsed.
-   */
+  /// A muParser function of @p variables, e.g. "x,y,t", of which the last is
+  /// what set_time() sets. @p entry names the parameter in error messages.
+  /// Throws ExpressionError when @p text cannot be parsed.
   template <int dim>
   std::unique_ptr<FunctionParser<dim>>
   parse_expression(const std::string &text,
@@ -42,30 +40,24 @@ namespace Viscoplastic
                    const std::string &entry);
 
 
-  /**
-   * A point or vector of the parameter file: dim numbers separated by commas.
-   * Throws ExcMessage naming @p entry.
-   */
+  /// A point or vector of the parameter file: dim numbers separated by commas.
+  /// Throws ExcMessage naming @p entry.
   template <int dim>
   Point<dim>
   parse_point(const std::string &text, const std::string &entry);
 
 
-  /**
-   * A scalar datum of the scene: a muParser expression of x, y, (z,) t given
-   * in the parameter file. It knows what it does not depend on, so that its
-   * users need not evaluate what cannot change.
-   */
+  /// A scalar datum of the scene: a muParser expression of x, y, (z,) t given
+  /// in the parameter file. It knows what it does not depend on, so that its
+  /// users need not evaluate what cannot change.
   template <int dim>
   class Expression
   {
   public:
-    /**
-     * @p entry names the parameter in error messages. @p variables are the
-     * names of the dim arguments before t where these are no coordinates; one
-     * more may follow them. Throws ExpressionError when @p text cannot be
-     * parsed.
-     */
+    /// @p entry names the parameter in error messages. @p variables are the
+    /// names of the dim arguments before t where these are no coordinates; one
+    /// more may follow them. Throws ExpressionError when @p text cannot be
+    /// parsed.
     Expression(const std::string &text,
                const std::string &entry,
                const std::string &variables =

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
+#include <nlohmann/json_fwd.hpp>
+
 #include <optional>
 #include <string>
 
@@ -26,13 +28,11 @@ namespace Viscoplastic
   void
   write_file(const std::string &name, const std::string &bytes);
 
-  /**
-   * Replace a file at once: whatever happens, it is the old one or the new one.
-   * The new one is written under the name with `.part' and renamed.
-   *
-   * With @p to_disk that holds also if the machine loses its power, which
-   * takes some milliseconds.
-   */
+  /// Replace a file at once: whatever happens, it is the old one or the new
+  /// one. The new one is written under the name with `.part' and renamed.
+  ///
+  /// With @p to_disk that holds also if the machine loses its power, which
+  /// takes some milliseconds.
   void
   replace_file(const std::string &name,
                const std::string &bytes,
@@ -48,12 +48,10 @@ namespace Viscoplastic
 
 
 
-  /**
-   * Keeps other processes out of a directory that this one writes into. The
-   * lock is one of the operating system on the file viscoplastic_contact.lock
-   * there: it vanishes with the process, however that ends, and the file alone
-   * keeps nobody out. Not collective: one rank holds the lock for all.
-   */
+  /// Keeps other processes out of a directory that this one writes into. The
+  /// lock is one of the operating system on the file viscoplastic_contact.lock
+  /// there: it vanishes with the process, however that ends, and the file alone
+  /// keeps nobody out. Not collective: one rank holds the lock for all.
   class DirectoryLock
   {
   public:
@@ -66,13 +64,11 @@ namespace Viscoplastic
     DirectoryLock &
     operator=(const DirectoryLock &) = delete;
 
-    /**
-     * Take the lock of a directory, unless this object has one already. @p
-     * otherwise: what else the user may do than wait. Throws
-     * ExcMessage if another process has it, or if the lock is no regular file.
-     * Without a lock goes on where there is none to be had: the directory does
-     * not exist yet or cannot be written, or its file system has no locks.
-     */
+    /// Take the lock of a directory, unless this object has one already. @p
+    /// otherwise: what else the user may do than wait. Throws
+    /// ExcMessage if another process has it, or if the lock is no regular file.
+    /// Without a lock goes on where there is none to be had: the directory does
+    /// not exist yet or cannot be written, or its file system has no locks.
     void
     acquire(const std::string &directory,
             const std::string &otherwise = "choose another directory");
@@ -81,4 +77,18 @@ namespace Viscoplastic
     std::string file;
     int         descriptor = -1;
   };
+
+  /// The full path of a file that comes with the program, which is named as in
+  /// the sources ("doc/index.md", "contrib/convert_mesh"): beside an installed
+  /// program, otherwise where the sources were when it was built. Empty if it
+  /// is in neither place.
+  std::string
+  path_of_resource(const std::string &name);
+
+  /// JSON as our files have it: indented, with a newline at the end. Numbers
+  /// have all their digits, or are null where they are not finite. Texts may
+  /// hold any bytes, as names of files do: what is no UTF-8 becomes the
+  /// replacement character.
+  std::string
+  json_text(const nlohmann::ordered_json &json);
 } // namespace Viscoplastic

@@ -15,13 +15,12 @@ namespace Viscoplastic
     linear
   };
 
-  /**
-   * While an object of this class lives, a run that has said nothing for some
-   * time says where it is, from within the iterations of a step: "Still at step
-   * 3 (t = 0.3): 2 Newton, 17 contact, 340 linear iterations  elapsed 31 s".
-   * Iterations and steps report to it by count() and begin_step(), which may be
-   * called without an object and then do nothing. Not for several threads.
-   */
+  /// While an object of this class lives, a run that has said nothing for some
+  /// time says where it is, from within the iterations of a step: "Still at
+  /// step 3 (t = 0.3): 2 Newton, 17 contact, 340 linear iterations  elapsed 31
+  /// s". Iterations and steps report to it by count() and begin_step(), which
+  /// may be called without an object and then do nothing. Not for several
+  /// threads.
   class Heartbeat
   {
   public:

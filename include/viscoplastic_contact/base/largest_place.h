@@ -11,11 +11,9 @@ namespace Viscoplastic
 {
   using namespace dealii;
 
-  /**
-   * The largest of some values that are not negative, and where it is: of
-   * values that are equal up to solver tolerances, the one with the least
-   * coordinates, so that the place does not depend on the number of ranks.
-   */
+  /// The largest of some values that are not negative, and where it is: of
+  /// values that are equal up to solver tolerances, the one with the least
+  /// coordinates, so that the place does not depend on the number of ranks.
   template <int dim>
   class LargestPlace
   {

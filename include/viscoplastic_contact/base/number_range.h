@@ -3,13 +3,11 @@
 
 #include <string>
 
-/**
- * Energies, norms and estimates of errors are made of squares, which leave the
- * range of floating-point numbers long before the numbers themselves do: the
- * square of 1e-170 is zero. A run whose largest displacement, stress or force
- * is that small would report energies of zero, and one of 1e170 infinite ones.
- * Such runs are refused; a few small steps in a run of ordinary ones are not.
- */
+/// Energies, norms and estimates of errors are made of squares, which leave the
+/// range of floating-point numbers long before the numbers themselves do: the
+/// square of 1e-170 is zero. A run whose largest displacement, stress or force
+/// is that small would report energies of zero, and one of 1e170 infinite ones.
+/// Such runs are refused; a few small steps in a run of ordinary ones are not.
 namespace Viscoplastic
 {
   /// Sizes of the solution (displacement, force, stress) that a run may have.
@@ -31,10 +29,8 @@ namespace Viscoplastic
                const double       largest);
 
 
-  /**
-   * The norm of a tensor or vector also where squares of its entries leave the
-   * range of floating-point numbers; otherwise norm() to the last bit.
-   */
+  /// The norm of a tensor or vector also where squares of its entries leave the
+  /// range of floating-point numbers; otherwise norm() to the last bit.
   template <typename TensorType>
   double
   stable_norm(const TensorType &tensor)

@@ -9,10 +9,9 @@
 
 namespace Viscoplastic
 {
-  /**
-   * How long the rest of a run takes, from what steps have taken: in proportion
-   * to the number of cells, and with weights that halve in about seven steps.
-   */
+  /// How long the rest of a run takes, from what steps have taken: in
+  /// proportion to the number of cells, and with weights that halve in about
+  /// seven steps.
   class RemainingTime
   {
   public:
@@ -39,12 +38,10 @@ namespace Viscoplastic
 
 
 
-  /**
-   * The size of steps to come, where they are chosen on the way: the mean of
-   * those that have been made, with weights that halve in about seven steps, or
-   * the last one if that is longer. A short one to a time that has to be met is
-   * no sign of others.
-   */
+  /// The size of steps to come, where they are chosen on the way: the mean of
+  /// those that have been made, with weights that halve in about seven steps,
+  /// or the last one if that is longer. A short one to a time that has to be
+  /// met is no sign of others.
   class ExpectedStep
   {
   public:
@@ -107,13 +104,11 @@ namespace Viscoplastic
 
 
 
-  /**
-   * Tells how a run proceeds, in lines: of 200 equal parts of the run each has
-   * at most one, and another one if the mesh changes or slip begins or ends in
-   * it; after a long silence the next step has one, too.
-   * Lines tell how many steps have been left out before them. statistics.csv
-   * has all steps.
-   */
+  /// Tells how a run proceeds, in lines: of 200 equal parts of the run each has
+  /// at most one, and another one if the mesh changes or slip begins or ends in
+  /// it; after a long silence the next step has one, too.
+  /// Lines tell how many steps have been left out before them. statistics.csv
+  /// has all steps.
   class Progress
   {
   public:

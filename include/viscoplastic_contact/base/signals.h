@@ -7,11 +7,9 @@
 
 namespace Viscoplastic
 {
-  /**
-   * While an object of this class lives, SIGUSR1 asks for a checkpoint, and
-   * SIGTERM and SIGINT ask the run to end after one. A second SIGTERM or SIGINT
-   * ends the process at once. There must not be two objects at a time.
-   */
+  /// While an object of this class lives, SIGUSR1 asks for a checkpoint, and
+  /// SIGTERM and SIGINT ask the run to end after one. A second SIGTERM or
+  /// SIGINT ends the process at once. There must not be two objects at a time.
   class SignalRequests
   {
   public:
@@ -31,11 +29,9 @@ namespace Viscoplastic
       bool is_late = false;
     };
 
-    /**
-     * What has been asked of any rank since the last call, the same on all of
-     * them; @p checkpoint and @p is_late, that there is no time for another
-     * step, add what this rank knows. Collective.
-     */
+    /// What has been asked of any rank since the last call, the same on all of
+    /// them; @p checkpoint and @p is_late, that there is no time for another
+    /// step, add what this rank knows. Collective.
     Request
     agree(const MPI_Comm communicator,
           const bool     checkpoint,

@@ -6,11 +6,9 @@
 
 namespace Viscoplastic
 {
-  /**
-   * The candidate that @p name was probably meant to be; empty if none is
-   * near. Case, blanks and punctuation do not count, and the beginning of a
-   * long name is near to it.
-   */
+  /// The candidate that @p name was probably meant to be; empty if none is
+  /// near. Case, blanks and punctuation do not count, and the beginning of a
+  /// long name is near to it.
   std::string
   nearest_name(const std::string              &name,
                const std::vector<std::string> &candidates);

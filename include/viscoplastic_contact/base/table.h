@@ -7,11 +7,9 @@
 
 namespace Viscoplastic
 {
-  /**
-   * The columns of a CSV file as functions of its first column, the argument:
-   * piecewise linear, or piecewise constant with the value of the last row that
-   * has been reached.
-   */
+  /// The columns of a CSV file as functions of its first column, the argument:
+  /// piecewise linear, or piecewise constant with the value of the last row
+  /// that has been reached.
   class DataTable
   {
   public:
@@ -28,13 +26,12 @@ namespace Viscoplastic
       constant // those of the nearest row
     };
 
-    /**
-     * Read the text of a file. @p section is what the parameter file calls the
-     * table, such as "Table 1"; messages have both names. The text is a line
-     * with the names of the columns, and lines of as many finite numbers each,
-     * the first of which ascend; all separated by commas. Empty lines and those
-     * that begin with `#' do not count. Throws ExcMessage with file and line.
-     */
+    /// Read the text of a file. @p section is what the parameter file calls the
+    /// table, such as "Table 1"; messages have both names. The text is a line
+    /// with the names of the columns, and lines of as many finite numbers each,
+    /// the first of which ascend; all separated by commas. Empty lines and
+    /// those that begin with `#' do not count. Throws ExcMessage with file and
+    /// line.
     DataTable(const std::string  &text,
               const std::string  &file,
               const std::string  &section,
@@ -115,11 +112,9 @@ namespace Viscoplastic
 
   using Tables = std::vector<std::shared_ptr<const DataTable>>;
 
-  /**
-   * The tables that expressions know which are made from now on: those of the
-   * parameter file that has been read last. Throws ExcMessage if a name is that
-   * of two columns, or of something else that expressions know.
-   */
+  /// The tables that expressions know which are made from now on: those of the
+  /// parameter file that has been read last. Throws ExcMessage if a name is
+  /// that of two columns, or of something else that expressions know.
   void
   use_tables(const Tables &tables);
 

@@ -19,12 +19,10 @@ namespace Viscoplastic
 {
   using namespace dealii;
 
-  /**
-   * deal.II's parser with columns of tables as functions, which deal.II keeps
-   * muParser from: its variables, constants and functions are those of
-   * FunctionParser. Between the coordinates and time there may be one more
-   * variable.
-   */
+  /// deal.II's parser with columns of tables as functions, which deal.II keeps
+  /// muParser from: its variables, constants and functions are those of
+  /// FunctionParser. Between the coordinates and time there may be one more
+  /// variable.
   template <int dim>
   class ParserWithTables : public FunctionParser<dim>
   {

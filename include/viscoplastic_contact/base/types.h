@@ -13,15 +13,23 @@ namespace dealii
   } // namespace TrilinosWrappers
 } // namespace dealii
 
-/**
- * Quasi-static frictional contact of elastic-viscoplastic bodies after Chen,
- * Han, Sofonea, SIAM J. Numer. Anal. 38(4), 2000. Numbers in round brackets
- * in the documentation are equations of that paper.
- */
+/// Quasi-static frictional contact of elastic-viscoplastic bodies after Chen,
+/// Han, Sofonea, SIAM J. Numer. Anal. 38(4), 2000. Numbers in round brackets
+/// in the documentation are equations of that paper.
 namespace Viscoplastic
 {
   // Declared only: their headers are heavy, and rooms that see nothing of
   // linear algebra but references do without. See base/linear_algebra.h.
   using DistributedVector = dealii::TrilinosWrappers::MPI::Vector;
   using DistributedMatrix = dealii::TrilinosWrappers::SparseMatrix;
+
+  /// Ids of boundaries and materials go up to this in mesh files, parameter
+  /// files and expressions.
+  constexpr unsigned int largest_id = 999999999;
 } // namespace Viscoplastic
+
+/// Explicit instantiation of a function template of the dimension alone. One of
+/// several with the same name has to be written out.
+#define VISCOPLASTIC_INSTANTIATE(function)    \
+  template decltype(function<2>) function<2>; \
+  template decltype(function<3>) function<3>

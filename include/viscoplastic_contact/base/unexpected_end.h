@@ -5,13 +5,11 @@
 
 namespace Viscoplastic
 {
-  /**
-   * While an object of this class lives, a call of exit() and an exception that
-   * nobody can catch, both of which code from a shared library of laws may
-   * come with, end the process with a sentence and the exit code 1: a run that
-   * ends early must not look like one that has succeeded. Objects may be
-   * nested, the last one says what the program was doing.
-   */
+  /// While an object of this class lives, a call of exit() and an exception
+  /// that nobody can catch, both of which code from a shared library of laws
+  /// may come with, end the process with a sentence and the exit code 1: a run
+  /// that ends early must not look like one that has succeeded. Objects may be
+  /// nested, the last one says what the program was doing.
   class UnexpectedEnd
   {
   public:

@@ -56,13 +56,11 @@ namespace Viscoplastic
     std::string unknown_name;
   };
 
-  /**
-   * The unit that follows a number ending at @p begin of @p text: after a
-   * blank, as in `25 MPa', `0.022 MPa/m', `1e-5 MPa^-5/day', `3 Pa s', or
-   * after a slash, as in `5/day'. What may be a part of a larger expression is
-   * left to it: `25 MPa*x' and `25 MPa/2' go on behind `MPa'. Nothing where a
-   * number has no unit.
-   */
+  /// The unit that follows a number ending at @p begin of @p text: after a
+  /// blank, as in `25 MPa', `0.022 MPa/m', `1e-5 MPa^-5/day', `3 Pa s', or
+  /// after a slash, as in `5/day'. What may be a part of a larger expression is
+  /// left to it: `25 MPa*x' and `25 MPa/2' go on behind `MPa'. Nothing where a
+  /// number has no unit.
   std::optional<UnitInText>
   read_unit(const std::string &text, const std::size_t begin);
 
@@ -92,23 +90,19 @@ namespace Viscoplastic
 
 
 
-  /**
-   * The units of a scene: those of numbers without unit in its parameter file
-   * and of all results. There may be none; then nothing is known but that they
-   * are consistent.
-   */
+  /// The units of a scene: those of numbers without unit in its parameter file
+  /// and of all results. There may be none; then nothing is known but that they
+  /// are consistent.
   class Units
   {
   public:
     /// No units: numbers are taken to be consistent.
     Units() = default;
 
-    /**
-     * The units with these names or products, of which the fourth may be given
-     * in the place of the third. All empty: none. Throws ExcMessage with a
-     * sentence about the entries `Length', `Time', `Stress' and `Force' of the
-     * subsection `Units'.
-     */
+    /// The units with these names or products, of which the fourth may be given
+    /// in the place of the third. All empty: none. Throws ExcMessage with a
+    /// sentence about the entries `Length', `Time', `Stress' and `Force' of the
+    /// subsection `Units'.
     Units(const std::string &length,
           const std::string &time,
           const std::string &stress,

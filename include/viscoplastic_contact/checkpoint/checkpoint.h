@@ -29,22 +29,18 @@ namespace Viscoplastic
   std::string
   pack_mesh(const parallel::distributed::Triangulation<dim> &triangulation);
 
-  /**
-   * Refine and coarsen until the mesh is the one that pack_mesh() has seen on
-   * all ranks together, whose results are @p parts. Throws ExcMessage if that
-   * is no mesh on the present coarse cells. Collective.
-   */
+  /// Refine and coarsen until the mesh is the one that pack_mesh() has seen on
+  /// all ranks together, whose results are @p parts. Throws ExcMessage if that
+  /// is no mesh on the present coarse cells. Collective.
   template <int dim>
   void
   restore_mesh(const std::vector<std::string>            &parts,
                parallel::distributed::Triangulation<dim> &triangulation);
 
-  /**
-   * What is attached to the cells of this rank and to their vertices:
-   * displacements, fields at samples, the contact points of @p face (null
-   * without), a truncation of it (null if there is none), and
-   * @p squared_estimate of active cells (empty without an estimator).
-   */
+  /// What is attached to the cells of this rank and to their vertices:
+  /// displacements, fields at samples, the contact points of @p face (null
+  /// without), a truncation of it (null if there is none), and
+  /// @p squared_estimate of active cells (empty without an estimator).
   template <int dim>
   std::string
   pack_fields(const StressSpace<dim> &stress_space,
@@ -65,12 +61,10 @@ namespace Viscoplastic
     std::array<bool, 7> has_sample_field;
   };
 
-  /**
-   * The inverse, on the same mesh. Sets the fields at nodes, contact and
-   * those at samples of @p state. Returns whether that was all that this
-   * rank needs. Throws ExcMessage for bytes that make no sense. Not collective
-   * but for the exchange of ghost values at its end.
-   */
+  /// The inverse, on the same mesh. Sets the fields at nodes, contact and
+  /// those at samples of @p state. Returns whether that was all that this
+  /// rank needs. Throws ExcMessage for bytes that make no sense. Not collective
+  /// but for the exchange of ghost values at its end.
   template <int dim>
   bool
   unpack_fields(const PackedFields     &packed,
@@ -80,10 +74,8 @@ namespace Viscoplastic
                 FaceTruncation         *truncation,
                 Vector<double>         &squared_estimate);
 
-  /**
-   * The coarse mesh in a form that can be compared: topology with ids, and
-   * places of the vertices.
-   */
+  /// The coarse mesh in a form that can be compared: topology with ids, and
+  /// places of the vertices.
   struct CoarseMesh
   {
     std::vector<std::uint8_t> topology;

@@ -5,11 +5,9 @@
 
 namespace Viscoplastic
 {
-  /**
-   * When a run writes a checkpoint by itself, and when its wall time is over.
-   * Knows nothing of other ranks: the clock of one of them has to decide for
-   * all. Times are seconds since the start of the process.
-   */
+  /// When a run writes a checkpoint by itself, and when its wall time is over.
+  /// Knows nothing of other ranks: the clock of one of them has to decide for
+  /// all. Times are seconds since the start of the process.
   class CheckpointSchedule
   {
   public:

@@ -12,23 +12,21 @@
 
 namespace Viscoplastic
 {
-  /**
-   * The checkpoints of a run: a directory with a subdirectory `step_000012' for
-   * each of the last ones, which holds any number of files and a manifest with
-   * their sizes and checksums.
-   *
-   * A checkpoint comes into being as a whole: it is written into a directory of
-   * another name, put to disk (fsync), and renamed. Whatever ends the program
-   * at whatever instant, the checkpoints before it are untouched.
-   *
-   * Only what the program has written is ever removed: the files that the
-   * manifest of a checkpoint names, or the list with which an unfinished one
-   * begins, and then the directory, if nothing else is in it. Functions that
-   * remove something return a sentence for each directory that has stayed for
-   * this reason.
-   *
-   * Member functions are collective; errors are ExcMessage on all ranks.
-   */
+  /// The checkpoints of a run: a directory with a subdirectory `step_000012'
+  /// for each of the last ones, which holds any number of files and a manifest
+  /// with their sizes and checksums.
+  ///
+  /// A checkpoint comes into being as a whole: it is written into a directory
+  /// of another name, put to disk (fsync), and renamed. Whatever ends the
+  /// program at whatever instant, the checkpoints before it are untouched.
+  ///
+  /// Only what the program has written is ever removed: the files that the
+  /// manifest of a checkpoint names, or the list with which an unfinished one
+  /// begins, and then the directory, if nothing else is in it. Functions that
+  /// remove something return a sentence for each directory that has stayed for
+  /// this reason.
+  ///
+  /// Member functions are collective; errors are ExcMessage on all ranks.
   class CheckpointStore
   {
   public:
@@ -44,20 +42,17 @@ namespace Viscoplastic
     void
     make_directory() const;
 
-    /**
-     * Write the files that each rank gives, by name, and remove all but the
-     * newest @p n_kept checkpoints. The manifest's files are filled in. What
-     * has the name of the checkpoint but is none of this program is renamed.
-     */
+    /// Write the files that each rank gives, by name, and remove all but the
+    /// newest @p n_kept checkpoints. The manifest's files are filled in. What
+    /// has the name of the checkpoint but is none of this program is renamed.
     std::vector<std::string>
     write(CheckpointManifest                        manifest,
           const std::map<std::string, std::string> &files_of_this_rank,
           const unsigned int                        n_kept) const;
 
-    /**
-     * The newest checkpoint whose files are all there and have their checksums,
-     * if any; @p remarks takes a sentence for each that has been passed over.
-     */
+    /// The newest checkpoint whose files are all there and have their
+    /// checksums, if any; @p remarks takes a sentence for each that has been
+    /// passed over.
     std::optional<CheckpointManifest>
     newest(std::vector<std::string> &remarks) const;
 
@@ -71,12 +66,10 @@ namespace Viscoplastic
       std::vector<std::string> remarks;
     };
 
-    /**
-     * Remove checkpoints after step @p n, what has been left of unfinished
-     * ones, and all but the newest @p n_kept (0: no one stays) up to step
-     * @p n: a run may have been killed after it had written one, before it
-     * removed the oldest. These are not in the number of checkpoints.
-     */
+    /// Remove checkpoints after step @p n, what has been left of unfinished
+    /// ones, and all but the newest @p n_kept (0: no one stays) up to step
+    /// @p n: a run may have been killed after it had written one, before it
+    /// removed the oldest. These are not in the number of checkpoints.
     Removal
     remove_others(const unsigned int n, const unsigned int n_kept) const;
 

@@ -5,7 +5,6 @@
 
 #include <viscoplastic_contact/checkpoint/checkpoint.h>
 #include <viscoplastic_contact/checkpoint/checkpoint_store.h>
-#include <viscoplastic_contact/checkpoint/parameter_changes.h>
 #include <viscoplastic_contact/error/error_budget.h>
 #include <viscoplastic_contact/results/recorder.h>
 #include <viscoplastic_contact/time_stepping/time_stepper.h>
@@ -38,6 +37,16 @@ namespace Viscoplastic
     Recorder<dim>       &recorder;
   };
 
+  /// What has become of the parameters since a checkpoint.
+  struct ParameterChanges
+  {
+    /// "'Time/Phases' is 2: 20 (was 1: 10)", those that a run may go on with
+    /// and those with which it cannot.
+    std::vector<std::string> allowed, forbidden;
+    /// Whether loads, conditions or laws are among those that are allowed.
+    bool of_data = false;
+  };
+
   /// Tell the user what is not as it was when a checkpoint was written.
   void
   remark_on_changes(const CheckpointManifest &checkpoint,
@@ -61,11 +70,9 @@ namespace Viscoplastic
            const TimeStepper<dim>                          &time_stepper,
            const std::vector<double>                       &output_times);
 
-  /**
-   * A checkpoint that a run goes on from, read in two parts, since fields need
-   * a discretization and that needs the mesh. Errors are ExcMessage with a
-   * sentence for the user. Collective.
-   */
+  /// A checkpoint that a run goes on from, read in two parts, since fields need
+  /// a discretization and that needs the mesh. Errors are ExcMessage with a
+  /// sentence for the user. Collective.
   template <int dim>
   class RunArchive
   {

@@ -98,15 +98,13 @@ namespace Viscoplastic
   };
 
 
-  /**
-   * Backward Euler for one sample at a given strain: the z that solves
-   *
-   *     z = z_old + k G(t_n, E eps + z, eps)
-   *
-   * by Newton's method from @p start, damped so that the residual decreases,
-   * and by continuation in k where that fails. @p point has the time t_n.
-   * Throws ExcMessage if there is no solution within reach.
-   */
+  /// Backward Euler for one sample at a given strain: the z that solves
+  ///
+  ///     z = z_old + k G(t_n, E eps + z, eps)
+  ///
+  /// by Newton's method from @p start, damped so that the residual decreases,
+  /// and by continuation in k where that fails. @p point has the time t_n.
+  /// Throws ExcMessage if there is no solution within reach.
   SymmetricTensor<2, 3>
   implicit_irreversible_stress(const ViscoplasticLaw       &law,
                                const SymmetricTensor<2, 3> &strain,
@@ -116,15 +114,13 @@ namespace Viscoplastic
                                const LawPoint              &point,
                                const SymmetricTensor<2, 3> &start);
 
-  /**
-   * The algorithmic (consistent) tangent of Simo and Taylor, Comput. Methods
-   * Appl. Mech. Eng. 48, 1985: the derivative of sigma = E eps + z(eps),
-   *
-   *     C = (I - k dG/dsigma)^-1 (E + k dG/deps).
-   *
-   * Symmetric and positive definite if the flow has a potential, and E itself
-   * where nothing flows.
-   */
+  /// The algorithmic (consistent) tangent of Simo and Taylor, Comput. Methods
+  /// Appl. Mech. Eng. 48, 1985: the derivative of sigma = E eps + z(eps),
+  ///
+  ///     C = (I - k dG/dsigma)^-1 (E + k dG/deps).
+  ///
+  /// Symmetric and positive definite if the flow has a potential, and E itself
+  /// where nothing flows.
   SymmetricTensor<4, 3>
   algorithmic_tangent(const ViscoplasticLaw       &law,
                       const SymmetricTensor<2, 3> &stress,
@@ -133,11 +129,9 @@ namespace Viscoplastic
                       const Stiffness             &stiffness,
                       const LawPoint              &point);
 
-  /**
-   * What a solver may take for C: its symmetric part, moved towards E as far as
-   * it takes to be positive definite. Laws without a potential, such as those
-   * that harden, do not have a symmetric one.
-   */
+  /// What a solver may take for C: its symmetric part, moved towards E as far
+  /// as it takes to be positive definite. Laws without a potential, such as
+  /// those that harden, do not have a symmetric one.
   SymmetricTensor<4, 3>
   definite_tangent(const SymmetricTensor<4, 3> &tangent,
                    const Stiffness             &stiffness);

@@ -5,11 +5,9 @@
 
 namespace Viscoplastic
 {
-  /**
-   * The base of a law that is written point by point,
-   *
-   *     class Perzyna final : public PointwiseLaw<Perzyna>
-   */
+  /// The base of a law that is written point by point,
+  ///
+  ///     class Perzyna final : public PointwiseLaw<Perzyna>
   template <typename Law>
   class PointwiseLaw : public ViscoplasticLaw
   {
@@ -25,22 +23,21 @@ namespace Viscoplastic
 
 
 
-  /**
-   * The base of a law of flow along the deviator,
-   *
-   *     G = -E (strain rate),   strain rate = 3/2 f dev(sigma)/sigma_eq,
-   *
-   * whose equivalent strain rate f depends on the von Mises stress sigma_eq and
-   * the point alone and is convex in sigma_eq. All that a law has to say is
-   *
-   *     FlowSlopes slopes(const double sigma_eq, const LawPoint &point) const;
-   *
-   * and, if it is continued beyond a cap, also has_cap() and
-   *
-   *     bool is_capped(const double sigma_eq, const LawPoint &point) const;
-   *
-   * Such a flow has a potential and preserves volume.
-   */
+  /// The base of a law of flow along the deviator,
+  ///
+  ///     G = -E (strain rate),   strain rate = 3/2 f dev(sigma)/sigma_eq,
+  ///
+  /// whose equivalent strain rate f depends on the von Mises stress sigma_eq
+  /// and the point alone and is convex in sigma_eq. All that a law has to say
+  /// is
+  ///
+  ///     FlowSlopes slopes(const double sigma_eq, const LawPoint &point) const;
+  ///
+  /// and, if it is continued beyond a cap, also has_cap() and
+  ///
+  ///     bool is_capped(const double sigma_eq, const LawPoint &point) const;
+  ///
+  /// Such a flow has a potential and preserves volume.
   template <typename Law>
   class RadialLaw : public ViscoplasticLaw
   {

@@ -28,34 +28,28 @@ namespace Viscoplastic
 
 
 
-  /**
-   * The elastic tensor E of one cell, stress = E strain.
-   *
-   * Stress and strain are always symmetric tensors of three dimensions. A
-   * plane-strain computation passes eps_zz = eps_xz = eps_yz = 0 and keeps
-   * sigma_zz, so everything that works on stresses is written once.
-   *
-   * An isotropic tensor is two moduli. Copies share the data of a general one.
-   * What is called for each cell at each step is inline.
-   */
+  /// The elastic tensor E of one cell, stress = E strain.
+  ///
+  /// Stress and strain are always symmetric tensors of three dimensions. A
+  /// plane-strain computation passes eps_zz = eps_xz = eps_yz = 0 and keeps
+  /// sigma_zz, so everything that works on stresses is written once.
+  ///
+  /// An isotropic tensor is two moduli. Copies share the data of a general one.
+  /// What is called for each cell at each step is inline.
   class Stiffness
   {
   public:
-    /**
-     * E eps = 2 mu dev eps + K tr(eps) I. Young's modulus (unit of stress)
-     * must be positive and finite, Poisson's ratio inside (-1, 1/2): this is
-     * what makes E elliptic. Throws the exceptions below otherwise.
-     */
+    /// E eps = 2 mu dev eps + K tr(eps) I. Young's modulus (unit of stress)
+    /// must be positive and finite, Poisson's ratio inside (-1, 1/2): this is
+    /// what makes E elliptic. Throws the exceptions below otherwise.
     static Stiffness
     isotropic(const double youngs_modulus, const double poissons_ratio);
 
-    /**
-     * A general elastic tensor: the 6 x 6 matrix in Voigt's order xx, yy, zz,
-     * yz, xz, xy with engineering shear strains. Throws ExcMessage unless it
-     * is symmetric and positive definite, naming the smallest eigenvalue. This
-     * is the eigenvalue of E as a map of symmetric tensors, which a rotation
-     * of the axes does not change, not that of the matrix.
-     */
+    /// A general elastic tensor: the 6 x 6 matrix in Voigt's order xx, yy, zz,
+    /// yz, xz, xy with engineering shear strains. Throws ExcMessage unless it
+    /// is symmetric and positive definite, naming the smallest eigenvalue. This
+    /// is the eigenvalue of E as a map of symmetric tensors, which a rotation
+    /// of the axes does not change, not that of the matrix.
     static Stiffness
     anisotropic(const FullMatrix<double> &voigt_matrix);
 
@@ -82,19 +76,15 @@ namespace Viscoplastic
     double
     bulk_modulus() const;
 
-    /**
-     * The largest eigenvalue of P E P, where P takes the deviator; 2 mu if
-     * isotropic.
-     * It turns the viscosity of a deviatoric flow into its relaxation rate.
-     */
+    /// The largest eigenvalue of P E P, where P takes the deviator; 2 mu if
+    /// isotropic.
+    /// It turns the viscosity of a deviatoric flow into its relaxation rate.
     double
     largest_deviatoric_eigenvalue() const;
 
-    /**
-     * 1 over the largest eigenvalue of P E^-1 P; 2 mu if isotropic. It bounds
-     * energies below: strain : E strain >= this |dev strain|^2, whatever the
-     * volumetric strain is.
-     */
+    /// 1 over the largest eigenvalue of P E^-1 P; 2 mu if isotropic. It bounds
+    /// energies below: strain : E strain >= this |dev strain|^2, whatever the
+    /// volumetric strain is.
     double
     smallest_deviatoric_eigenvalue() const;
 
@@ -137,10 +127,8 @@ namespace Viscoplastic
 
 
 
-  /**
-   * The von Mises stress sqrt(3/2) |dev stress|; it is the axial stress under
-   * uniaxial tension.
-   */
+  /// The von Mises stress sqrt(3/2) |dev stress|; it is the axial stress under
+  /// uniaxial tension.
   inline double
   von_mises(const SymmetricTensor<2, 3> &stress)
   {

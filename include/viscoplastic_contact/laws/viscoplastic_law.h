@@ -35,11 +35,9 @@ namespace Viscoplastic
 
 
 
-  /**
-   * A number in a law, such as a viscosity: an expression of x, y, (z,) t and
-   * the temperature T of the parameter file, with the range that it must have
-   * everywhere.
-   */
+  /// A number in a law, such as a viscosity: an expression of x, y, (z,) t and
+  /// the temperature T of the parameter file, with the range that it must have
+  /// everywhere.
   class LawParameter
   {
   public:
@@ -53,10 +51,8 @@ namespace Viscoplastic
       any             // finite
     };
 
-    /**
-     * Read @p entry of the section. Throws ExcMessage if it cannot be parsed,
-     * or is constant and out of range.
-     */
+    /// Read @p entry of the section. Throws ExcMessage if it cannot be parsed,
+    /// or is constant and out of range.
     LawParameter(const LawSection  &section,
                  const std::string &entry,
                  const Range        range);
@@ -152,26 +148,24 @@ namespace Viscoplastic
 
 
 
-  /**
-   * The function G of the constitutive equation (1.1),
-   *
-   *     sigma' = E eps(u') + G(t, sigma, eps(u)),
-   *
-   * also the rate of the irreversible stress z = sigma - E eps(u). Beside z a
-   * law may remember up to six scalars alpha at each point, its history
-   * variables, with rates of their own,
-   *
-   *     alpha' = H(t, sigma, eps(u), alpha),
-   *
-   * on which G may depend. A law knows
-   * no mesh and has no state: all its functions are const and depend on their
-   * arguments only, so cells can be visited in any order and by several
-   * threads. G must be Lipschitz in stress and strain, (2.8).
-   *
-   * A new law is one file: in a shared library that the parameter file names,
-   * or in source/laws with one line in the list of
-   * source/laws/viscoplastic_law.cc, see doc/adding_a_law.md.
-   */
+  /// The function G of the constitutive equation (1.1),
+  ///
+  ///     sigma' = E eps(u') + G(t, sigma, eps(u)),
+  ///
+  /// also the rate of the irreversible stress z = sigma - E eps(u). Beside z a
+  /// law may remember up to six scalars alpha at each point, its history
+  /// variables, with rates of their own,
+  ///
+  ///     alpha' = H(t, sigma, eps(u), alpha),
+  ///
+  /// on which G may depend. A law knows
+  /// no mesh and has no state: all its functions are const and depend on their
+  /// arguments only, so cells can be visited in any order and by several
+  /// threads. G must be Lipschitz in stress and strain, (2.8).
+  ///
+  /// A new law is one file: in a shared library that the parameter file names,
+  /// or in source/laws with one line in the list of
+  /// source/laws/viscoplastic_law.cc, see doc/adding_a_law.md.
   class ViscoplasticLaw
   {
   public:
@@ -211,10 +205,8 @@ namespace Viscoplastic
     virtual bool
     depends_on_time() const;
 
-    /**
-     * Whether the law goes with this elastic tensor; throws ExcMessage if not,
-     * e.g. for a long-term modulus beyond the elastic one.
-     */
+    /// Whether the law goes with this elastic tensor; throws ExcMessage if not,
+    /// e.g. for a long-term modulus beyond the elastic one.
     virtual void
     check(const Stiffness & /*stiffness*/, const LawPoint & /*point*/) const
     {}
@@ -236,10 +228,8 @@ namespace Viscoplastic
       SymmetricTensor<4, 3> strain;
     };
 
-    /**
-     * The derivatives of rate(). Where G has a kink, one of the one-sided
-     * derivatives, as a semismooth Newton method needs it.
-     */
+    /// The derivatives of rate(). Where G has a kink, one of the one-sided
+    /// derivatives, as a semismooth Newton method needs it.
     virtual Tangents
     tangents(const SymmetricTensor<2, 3> &stress,
              const SymmetricTensor<2, 3> &strain,
@@ -257,15 +247,13 @@ namespace Viscoplastic
                  const Stiffness             &stiffness,
                  const LawPoint              &point) const;
 
-    /**
-     * Backward Euler for the history variables at a given stress: the alpha
-     * that solves
-     *
-     *     alpha = point.history + k H(t, sigma, eps, alpha).
-     *
-     * By Newton's method with differences, unless a law knows better. Throws
-     * ExcMessage if it finds none.
-     */
+    /// Backward Euler for the history variables at a given stress: the alpha
+    /// that solves
+    ///
+    ///     alpha = point.history + k H(t, sigma, eps, alpha).
+    ///
+    /// By Newton's method with differences, unless a law knows better. Throws
+    /// ExcMessage if it finds none.
     virtual SymmetricTensor<2, 3>
     history_after_step(const SymmetricTensor<2, 3> &stress,
                        const SymmetricTensor<2, 3> &strain,
@@ -309,11 +297,9 @@ namespace Viscoplastic
       return false;
     }
 
-    /**
-     * Whether the tangent of a step of backward Euler (algorithmic_tangent())
-     * is symmetric at all states, as it is for flow that has a potential. If
-     * not, the linear systems of a step are solved by GMRES as well.
-     */
+    /// Whether the tangent of a step of backward Euler (algorithmic_tangent())
+    /// is symmetric at all states, as it is for flow that has a potential. If
+    /// not, the linear systems of a step are solved by GMRES as well.
     virtual bool
     has_symmetric_tangents() const
     {
@@ -337,32 +323,26 @@ namespace Viscoplastic
       return {};
     }
 
-    /**
-     * The rate r >= 0, 1/time, at which stress relaxes at fixed strain: at
-     * least the largest eigenvalue of -dG/dsigma at this stress, of a law with
-     * history variables that of -d(G, H)/d(sigma, alpha). Forward Euler
-     * is stable for time steps up to 2/r. A law whose rate may jump to a larger
-     * value within one step returns the larger one.
-     */
+    /// The rate r >= 0, 1/time, at which stress relaxes at fixed strain: at
+    /// least the largest eigenvalue of -dG/dsigma at this stress, of a law with
+    /// history variables that of -d(G, H)/d(sigma, alpha). Forward Euler
+    /// is stable for time steps up to 2/r. A law whose rate may jump to a
+    /// larger value within one step returns the larger one.
     virtual double
     relaxation_rate(const SymmetricTensor<2, 3> &stress,
                     const SymmetricTensor<2, 3> &strain,
                     const Stiffness             &stiffness,
                     const LawPoint              &point) const = 0;
 
-    /**
-     * Whether the flow preserves volume. Such a flow locks volumetrically on
-     * quadrilaterals and hexahedra whatever Poisson's ratio is, so mean
-     * dilatation is the default then.
-     */
+    /// Whether the flow preserves volume. Such a flow locks volumetrically on
+    /// quadrilaterals and hexahedra whatever Poisson's ratio is, so mean
+    /// dilatation is the default then.
     virtual bool
     deviatoric_flow() const = 0;
 
-    /**
-     * A: the flow dissipates the power -G : A, unit of strain. E^-1 sigma
-     * unless part of the energy is stored elsewhere. Not used of laws with
-     * history variables, which dissipate what they do not store.
-     */
+    /// A: the flow dissipates the power -G : A, unit of strain. E^-1 sigma
+    /// unless part of the energy is stored elsewhere. Not used of laws with
+    /// history variables, which dissipate what they do not store.
     virtual SymmetricTensor<2, 3>
     driving_strain(const SymmetricTensor<2, 3> &stress,
                    const SymmetricTensor<2, 3> &strain,
@@ -399,11 +379,9 @@ namespace Viscoplastic
       return false;
     }
 
-    /**
-     * G at all points of a cell, what rate(), relaxation_rate() and
-     * is_beyond_cap() give at each. Steps call this once a cell; PointwiseLaw
-     * and RadialLaw do it without a virtual call a point.
-     */
+    /// G at all points of a cell, what rate(), relaxation_rate() and
+    /// is_beyond_cap() give at each. Steps call this once a cell; PointwiseLaw
+    /// and RadialLaw do it without a virtual call a point.
     virtual void
     flow(const LawStates &states, Flow *result) const;
 
@@ -450,13 +428,11 @@ namespace Viscoplastic
 
 
 
-  /**
-   * The derivative, with respect to stress, of the strain rate
-   * 3/2 f dev(stress)/sigma_eq of a flow along the deviator, where f depends
-   * on the von Mises stress sigma_eq. @p secant is f/sigma_eq and @p tangent
-   * is df/dsigma_eq, both 1/(stress time): along the deviator the strain rate
-   * grows with the tangent; across it, it only turns.
-   */
+  /// The derivative, with respect to stress, of the strain rate
+  /// 3/2 f dev(stress)/sigma_eq of a flow along the deviator, where f depends
+  /// on the von Mises stress sigma_eq. @p secant is f/sigma_eq and @p tangent
+  /// is df/dsigma_eq, both 1/(stress time): along the deviator the strain rate
+  /// grows with the tangent; across it, it only turns.
   SymmetricTensor<4, 3>
   flow_tangent(const SymmetricTensor<2, 3> &stress,
                const double                 secant,
@@ -485,10 +461,8 @@ namespace Viscoplastic
   const std::vector<LawDescription> &
   built_in_laws();
 
-  /**
-   * The allowed values of the entry `Law` as for Patterns::Selection:
-   * `elastic` and the laws, separated by `|`.
-   */
+  /// The allowed values of the entry `Law` as for Patterns::Selection:
+  /// `elastic` and the laws, separated by `|`.
   std::string
   viscoplastic_law_names(
     const std::vector<LawDescription> &laws = built_in_laws());
@@ -504,13 +478,11 @@ namespace Viscoplastic
     ParameterHandler                  &prm,
     const std::vector<LawDescription> &laws = built_in_laws());
 
-  /**
-   * The law of this name, with the parameters of its subsection of the
-   * current subsection, which @p section names in messages; @p dim is the
-   * dimension of the scene. Null for `elastic`: a body without viscosity has
-   * no law object and no irreversible stress. Throws ExcMessage for an unknown
-   * name and for parameters outside their range.
-   */
+  /// The law of this name, with the parameters of its subsection of the
+  /// current subsection, which @p section names in messages; @p dim is the
+  /// dimension of the scene. Null for `elastic`: a body without viscosity has
+  /// no law object and no irreversible stress. Throws ExcMessage for an unknown
+  /// name and for parameters outside their range.
   std::unique_ptr<ViscoplasticLaw>
   make_viscoplastic_law(
     const std::string                 &name,

@@ -7,13 +7,19 @@
 
 namespace Viscoplastic
 {
-  /**
-   * Make the mesh of a scene as it is before any adaptation: take it from a
-   * generator or a file, give it the ids of the expressions, move, check and
-   * refine it. Collective. Throws ExcMessage with a sentence for the user.
-   */
+  /// Make the mesh of a scene as it is before any adaptation: take it from a
+  /// generator or a file, give it the ids of the expressions, move, check and
+  /// refine it. Collective. Throws ExcMessage with a sentence for the user.
   template <int dim>
   void
   make_mesh(const GeometryParameters                  &geometry,
             parallel::distributed::Triangulation<dim> &triangulation);
+
+  /// Make the coarse mesh of `Geometry/Generator'. Collective. Throws
+  /// ExcMessage with a sentence for the user, also where the mesh would be
+  /// larger than any memory.
+  template <int dim>
+  void
+  generate_mesh(const GeometryParameters                  &geometry,
+                parallel::distributed::Triangulation<dim> &triangulation);
 } // namespace Viscoplastic

@@ -9,11 +9,9 @@
 
 namespace Viscoplastic
 {
-  /**
-   * Give the coarse mesh the ids of the expressions `Geometry/Boundary ids' and
-   * `Geometry/Material ids', if there are any. Throws ExcMessage with a
-   * sentence for the user.
-   */
+  /// Give the coarse mesh the ids of the expressions `Geometry/Boundary ids'
+  /// and `Geometry/Material ids', if there are any. Throws ExcMessage with a
+  /// sentence for the user.
   template <int dim>
   void
   set_ids(const GeometryParameters                  &geometry,

@@ -19,11 +19,9 @@ namespace Viscoplastic
     double deviation;
   };
 
-  /**
-   * Return the mean normal of the boundary faces with this @p id, each weighted
-   * by its area. Where normals cancel, as all around a body, it is zero and the
-   * deviation 180. Collective.
-   */
+  /// Return the mean normal of the boundary faces with this @p id, each
+  /// weighted by its area. Where normals cancel, as all around a body, it is
+  /// zero and the deviation 180. Collective.
   template <int dim>
   PieceNormal<dim>
   piece_normal(const parallel::distributed::Triangulation<dim> &triangulation,

@@ -7,10 +7,9 @@
 
 namespace Viscoplastic
 {
-  /**
-   * Refine the mesh as `Geometry/Global refinements' and `Boundary refinements'
-   * say. Collective. Throws ExcMessage with a sentence for the user.
-   */
+  /// Refine the mesh as `Geometry/Global refinements' and `Boundary
+  /// refinements' say. Collective. Throws ExcMessage with a sentence for the
+  /// user.
   template <int dim>
   void
   refine_mesh(const GeometryParameters                  &geometry,
@@ -22,12 +21,11 @@ namespace Viscoplastic
   refine_like(const parallel::distributed::Triangulation<dim> &model,
               parallel::distributed::Triangulation<dim>       &triangulation);
 
-  /**
-   * prepare_coarsening_and_refinement() for the whole mesh: the flags that a
-   * balanced mesh asks for, whatever part each rank has. deal.II's own looks at
-   * the flags of owned cells alone: beside the cells of another rank a family
-   * stays that could go with them, and cells are refined unasked. Collective.
-   */
+  /// prepare_coarsening_and_refinement() for the whole mesh: the flags that a
+  /// balanced mesh asks for, whatever part each rank has. deal.II's own looks
+  /// at the flags of owned cells alone: beside the cells of another rank a
+  /// family stays that could go with them, and cells are refined unasked.
+  /// Collective.
   template <int dim>
   void
   prepare_mesh_change(parallel::distributed::Triangulation<dim> &triangulation);

@@ -9,14 +9,12 @@
 
 namespace Viscoplastic
 {
-  /**
-   * Check that a mesh of @p n_cells cells in @p dim dimensions is possible: its
-   * unknowns have to be numbered by 32 bits, those of a rank's matrix entries,
-   * too, and the mesh has to fit the memory of the computers. To be called
-   * before memory is taken, which would not end with an error but with all
-   * other programs of the computer. Collective. Throws ExcMessage with a
-   * sentence that begins with @p cause, e.g. an entry and its value.
-   */
+  /// Check that a mesh of @p n_cells cells in @p dim dimensions is possible:
+  /// its unknowns have to be numbered by 32 bits, those of a rank's matrix
+  /// entries, too, and the mesh has to fit the memory of the computers. To be
+  /// called before memory is taken, which would not end with an error but with
+  /// all other programs of the computer. Collective. Throws ExcMessage with a
+  /// sentence that begins with @p cause, e.g. an entry and its value.
   void
   check_mesh_size(const unsigned int dim,
                   const double       n_cells,

@@ -17,11 +17,9 @@
 
 namespace Viscoplastic
 {
-  /**
-   * The mapping of cells whose weights JxW integrate over what a cell stands
-   * for: itself, or the ring that it is a section of, with 2 pi r. Values of
-   * finite elements with it are those of the (bi-, tri-)linear mapping.
-   */
+  /// The mapping of cells whose weights JxW integrate over what a cell stands
+  /// for: itself, or the ring that it is a section of, with 2 pi r. Values of
+  /// finite elements with it are those of the (bi-, tri-)linear mapping.
   template <int dim>
   const Mapping<dim> &
   mapping_of(const PlaneModel model);

@@ -50,24 +50,20 @@ namespace Viscoplastic
   /// Whether cells of a material count; empty for all.
   using MaterialFilter = std::function<bool(const types::material_id)>;
 
-  /**
-   * Find the cells of some points; of several cells that a point is on, the one
-   * whose center has the least coordinates, x first, which does not depend on
-   * the number of ranks. Cells of materials that are not @p is_preferred count
-   * only where there is no other. For a point outside of the mesh it is the
-   * place on its boundary that is nearest. Collective.
-   */
+  /// Find the cells of some points; of several cells that a point is on, the
+  /// one whose center has the least coordinates, x first, which does not depend
+  /// on the number of ranks. Cells of materials that are not @p is_preferred
+  /// count only where there is no other. For a point outside of the mesh it is
+  /// the place on its boundary that is nearest. Collective.
   template <int dim>
   PointLocations<dim>
   locate_points(const Triangulation<dim>      &triangulation,
                 const std::vector<Point<dim>> &points,
                 const MaterialFilter          &is_preferred = {});
 
-  /**
-   * Find the faces of some boundaries that points are on; of several ones that
-   * whose center has the least coordinates. Points that are on none are
-   * elsewhere on all ranks, and have a positive distance. Collective.
-   */
+  /// Find the faces of some boundaries that points are on; of several ones that
+  /// whose center has the least coordinates. Points that are on none are
+  /// elsewhere on all ranks, and have a positive distance. Collective.
   template <int dim>
   PointLocations<dim>
   locate_on_boundary(const Triangulation<dim>           &triangulation,
@@ -75,10 +71,8 @@ namespace Viscoplastic
                      const std::set<types::boundary_id> &ids);
 
 
-  /**
-   * Throws ExcMessage that names @p entry and the nearest place unless all of
-   * some points are in the mesh. Collective.
-   */
+  /// Throws ExcMessage that names @p entry and the nearest place unless all of
+  /// some points are in the mesh. Collective.
   template <int dim>
   void
   check_points(const Triangulation<dim>      &triangulation,

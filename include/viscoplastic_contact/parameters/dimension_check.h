@@ -8,16 +8,14 @@
 
 namespace Viscoplastic
 {
-  /**
-   * What is wrong with the dimensions of an expression, or of a list of them,
-   * whose numbers have units: that it adds a length to a stress, or that it is
-   * no @p wanted. A part of a sentence, or empty.
-   *
-   * The coordinates are lengths and t is a time; of the function of a law,
-   * sigma_eq and p are stresses. A number without unit may have any, since it
-   * has that of the scene, so that `0.3*t' is whatever is wanted. What cannot
-   * be read is left to the parser of expressions.
-   */
+  /// What is wrong with the dimensions of an expression, or of a list of them,
+  /// whose numbers have units: that it adds a length to a stress, or that it is
+  /// no @p wanted. A part of a sentence, or empty.
+  ///
+  /// The coordinates are lengths and t is a time; of the function of a law,
+  /// sigma_eq and p are stresses. A number without unit may have any, since it
+  /// has that of the scene, so that `0.3*t' is whatever is wanted. What cannot
+  /// be read is left to the parser of expressions.
   std::string
   wrong_dimension(const std::string              &text,
                   const std::optional<Dimension> &wanted);

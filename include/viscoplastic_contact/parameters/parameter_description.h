@@ -6,12 +6,10 @@
 
 namespace Viscoplastic
 {
-  /**
-   * A parameter file with every entry: meaning, unit, default and allowed
-   * values in comments, and `Boundary 0' and `Material 1' in the place of all
-   * ids. It is itself a scene: that of @p files and @p overrides, as
-   * Parameters reads them, or without files a square at rest.
-   */
+  /// A parameter file with every entry: meaning, unit, default and allowed
+  /// values in comments, and `Boundary 0' and `Material 1' in the place of all
+  /// ids. It is itself a scene: that of @p files and @p overrides, as
+  /// Parameters reads them, or without files a square at rest.
   std::string
   describe_parameters(const std::vector<std::string> &files     = {},
                       const std::vector<std::string> &overrides = {});

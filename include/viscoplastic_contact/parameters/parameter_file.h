@@ -16,24 +16,20 @@ namespace Viscoplastic
 {
   struct ParameterLine;
 
-  /**
-   * One or several parameter files, read and checked as far as that is possible
-   * without a mesh. Expressions stay texts here: their number of components
-   * depends on the dimension, so Scene<dim> parses them. Numbers that have a
-   * unit in the files are numbers in the units of the scene here.
-   */
+  /// One or several parameter files, read and checked as far as that is
+  /// possible without a mesh. Expressions stay texts here: their number of
+  /// components depends on the dimension, so Scene<dim> parses them. Numbers
+  /// that have a unit in the files are numbers in the units of the scene here.
   class Parameters
   {
   public:
-    /**
-     * Read @p files, of which later ones override earlier ones, and then the
-     * assignments `Section/Entry=value' of @p overrides. Subsections
-     * `Boundary 0', `Material 1' and so on are declared for the ids that these
-     * name. Without files everything has its default.
-     *
-     * Throws ExcMessage with a sentence that says where something unknown or
-     * wrong is, and what would be right.
-     */
+    /// Read @p files, of which later ones override earlier ones, and then the
+    /// assignments `Section/Entry=value' of @p overrides. Subsections
+    /// `Boundary 0', `Material 1' and so on are declared for the ids that these
+    /// name. Without files everything has its default.
+    ///
+    /// Throws ExcMessage with a sentence that says where something unknown or
+    /// wrong is, and what would be right.
     explicit Parameters(const std::vector<std::string> &files,
                         const std::vector<std::string> &overrides = {});
 

@@ -22,11 +22,9 @@ namespace Viscoplastic
     std::string value      = {};
     bool        is_opening = false;
 
-    /**
-     * The absolute path of a file that the line names: beside the file that the
-     * line stands in, or in the working directory. Throws ExcMessage if it is
-     * in neither.
-     */
+    /// The absolute path of a file that the line names: beside the file that
+    /// the line stands in, or in the working directory. Throws ExcMessage if it
+    /// is in neither.
     std::string
     locate(const std::string &file) const;
 
@@ -35,16 +33,14 @@ namespace Viscoplastic
     origin() const;
   };
 
-  /**
-   * What ParameterHandler is to read: the statements of some files, with those
-   * that they include in their places, and then of the assignments
-   * `Section/Entry=value' of the command line. Whether names and values are
-   * right is left to ParameterHandler. Here is what it does not do: includes
-   * are relative to the including file and close what they open, the same entry
-   * twice in one file is an error, and `Boundary 03' is `Boundary 3'.
-   *
-   * Throws ExcMessage with file and line.
-   */
+  /// What ParameterHandler is to read: the statements of some files, with those
+  /// that they include in their places, and then of the assignments
+  /// `Section/Entry=value' of the command line. Whether names and values are
+  /// right is left to ParameterHandler. Here is what it does not do: includes
+  /// are relative to the including file and close what they open, the same
+  /// entry twice in one file is an error, and `Boundary 03' is `Boundary 3'.
+  ///
+  /// Throws ExcMessage with file and line.
   std::vector<ParameterLine>
   read_parameter_lines(const std::vector<std::string> &files,
                        const std::vector<std::string> &assignments);

@@ -13,11 +13,9 @@ namespace Viscoplastic
 {
   using namespace dealii;
 
-  /**
-   * Everything that is declared, in the order of declaration: a node with a
-   * leaf `value' is an entry, with the leaves `default_value', `documentation'
-   * and `pattern_description'; others are subsections.
-   */
+  /// Everything that is declared, in the order of declaration: a node with a
+  /// leaf `value' is an entry, with the leaves `default_value', `documentation'
+  /// and `pattern_description'; others are subsections.
   boost::property_tree::ptree
   declared_entries(const ParameterHandler &handler);
 

@@ -26,25 +26,21 @@ namespace Viscoplastic
     std::string           entry_of_exponent = "Exponent";
   };
 
-  /**
-   * The unit of an entry as its description says it, behind `Unit: ': "length",
-   * "time", "stress", "1" for pure numbers and a few others, see
-   * source/parameters/quantities.cc; of others the dimension is not known.
-   * @p exponent is that of the power of an entry in "1/(stress^n time)" or
-   * "stress/length^m".
-   * Nothing for descriptions without those words: the text is no number.
-   */
+  /// The unit of an entry as its description says it, behind `Unit: ':
+  /// "length", "time", "stress", "1" for pure numbers and a few others, see
+  /// source/parameters/quantities.cc; of others the dimension is not known.
+  /// @p exponent is that of the power of an entry in "1/(stress^n time)" or
+  /// "stress/length^m".
+  /// Nothing for descriptions without those words: the text is no number.
   std::optional<EntryUnit>
   unit_of_entry(const std::string           &description,
                 const std::optional<double> &exponent = {});
 
-  /**
-   * The text with each number that has a unit replaced by that number in the
-   * units of the scene: `25 MPa*(1 - x/(2 km))' becomes `25*(1 - x/(2000))'
-   * with MPa and m. Throws ExcMessage with a part of a sentence: for a unit
-   * that does not exist or does not fit the entry, or where the scene has no
-   * @p units.
-   */
+  /// The text with each number that has a unit replaced by that number in the
+  /// units of the scene: `25 MPa*(1 - x/(2 km))' becomes `25*(1 - x/(2000))'
+  /// with MPa and m. Throws ExcMessage with a part of a sentence: for a unit
+  /// that does not exist or does not fit the entry, or where the scene has no
+  /// @p units.
   std::string
   without_units(const std::string &text,
                 const EntryUnit   &entry,
@@ -55,11 +51,9 @@ namespace Viscoplastic
   Units
   declared_units(const std::vector<ParameterLine> &lines);
 
-  /**
-   * Replace the values of @p lines, which set entries of @p handler, by those
-   * without_units(). Returns the values as they were in the file, by path,
-   * where they had units. Throws ExcMessage with file and line.
-   */
+  /// Replace the values of @p lines, which set entries of @p handler, by those
+  /// without_units(). Returns the values as they were in the file, by path,
+  /// where they had units. Throws ExcMessage with file and line.
   std::map<std::string, std::string>
   remove_units(std::vector<ParameterLine>     &lines,
                const Units                    &units,

@@ -13,10 +13,8 @@
 
 namespace Viscoplastic
 {
-  /**
-   * Which effects of a scene have made a difference so far in a run, apart from
-   * those that its sums and maxima (RunSummary) tell of.
-   */
+  /// Which effects of a scene have made a difference so far in a run, apart
+  /// from those that its sums and maxima (RunSummary) tell of.
   template <int dim>
   class ActingEffects
   {

@@ -19,13 +19,11 @@ namespace Viscoplastic
     std::array<double, GeometryInfo<dim>::vertices_per_cell>;
 
 
-  /**
-   * Fields of the body in a state: what the outputs, points, lines and
-   * integrals have of it comes from here. Displacement and velocity have values
-   * at vertices, all others are means of cells. Values come in the order of the
-   * enumeration, one for each component. Nothing is computed for what is not
-   * asked for.
-   */
+  /// Fields of the body in a state: what the outputs, points, lines and
+  /// integrals have of it comes from here. Displacement and velocity have
+  /// values at vertices, all others are means of cells. Values come in the
+  /// order of the enumeration, one for each component. Nothing is computed for
+  /// what is not asked for.
   template <int dim>
   class BodyFields
   {

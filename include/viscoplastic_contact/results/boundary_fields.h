@@ -11,13 +11,11 @@
 
 namespace Viscoplastic
 {
-  /**
-   * Fields of the boundary in a state, as BodyFields are of the body: those of
-   * contact and friction, which have values at the nodes of Gamma_3, and
-   * tractions, which are those of the mean stress of the cell behind a face. On
-   * the other side of contact between two bodies there are the same fields:
-   * means over the nodes opposite, of vectors the reverse.
-   */
+  /// Fields of the boundary in a state, as BodyFields are of the body: those of
+  /// contact and friction, which have values at the nodes of Gamma_3, and
+  /// tractions, which are those of the mean stress of the cell behind a face.
+  /// On the other side of contact between two bodies there are the same fields:
+  /// means over the nodes opposite, of vectors the reverse.
   template <int dim>
   class BoundaryFields
   {

@@ -30,20 +30,18 @@ namespace Viscoplastic
 
 
 
-  /**
-   * The balance of energy over a run,
-   *
-   *     external work + work of heating = change of the stored energy
-   *                                       + viscous dissipation
-   *                                       + dissipation by friction.
-   *
-   * The time integration keeps that of the bulk exactly, whatever the step
-   * size, so that the defect is that of friction: sum lambda . s takes the
-   * multiplier at the end of each step, the work of the loads the mean. It
-   * vanishes with the step size. A body gives way when its mesh is refined,
-   * and the loads do work; what changes of the mesh do to the stored energy
-   * beyond that is no physics and counts apart.
-   */
+  /// The balance of energy over a run,
+  ///
+  ///     external work + work of heating = change of the stored energy
+  ///                                       + viscous dissipation
+  ///                                       + dissipation by friction.
+  ///
+  /// The time integration keeps that of the bulk exactly, whatever the step
+  /// size, so that the defect is that of friction: sum lambda . s takes the
+  /// multiplier at the end of each step, the work of the loads the mean. It
+  /// vanishes with the step size. A body gives way when its mesh is refined,
+  /// and the loads do work; what changes of the mesh do to the stored energy
+  /// beyond that is no physics and counts apart.
   class EnergyBalance
   {
   public:

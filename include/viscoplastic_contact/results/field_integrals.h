@@ -11,11 +11,9 @@
 
 namespace Viscoplastic
 {
-  /**
-   * The integrals of `Output/Integrals' on one mesh, over the undeformed body:
-   * for each boundary or material first its area or volume, then its fields,
-   * then its energies.
-   */
+  /// The integrals of `Output/Integrals' on one mesh, over the undeformed body:
+  /// for each boundary or material first its area or volume, then its fields,
+  /// then its energies.
   template <int dim>
   class FieldIntegrals
   {

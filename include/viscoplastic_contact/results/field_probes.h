@@ -11,11 +11,9 @@
 
 namespace Viscoplastic
 {
-  /**
-   * Fields at some points of the body, on one mesh, as the outputs have them: a
-   * field that is constant in cells is that of the cell that locate_points()
-   * gives. Fields of the boundary are known at points on Gamma_3.
-   */
+  /// Fields at some points of the body, on one mesh, as the outputs have them:
+  /// a field that is constant in cells is that of the cell that locate_points()
+  /// gives. Fields of the boundary are known at points on Gamma_3.
   template <int dim>
   class FieldProbes
   {

@@ -15,11 +15,9 @@ namespace Viscoplastic
   line_file_name(const std::size_t i);
 
 
-  /**
-   * The files of `Output/Lines': comma separated values, a row for each point
-   * of the line at each time, one time after the other. Nothing is done in a
-   * scene without lines.
-   */
+  /// The files of `Output/Lines': comma separated values, a row for each point
+  /// of the line at each time, one time after the other. Nothing is done in a
+  /// scene without lines.
   template <int dim>
   class LineOutput
   {

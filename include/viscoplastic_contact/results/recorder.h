@@ -21,11 +21,9 @@
 
 namespace Viscoplastic
 {
-  /**
-   * Keeps the record of a run: measures each step, warns of what makes its
-   * numbers doubtful, writes its row of statistics.csv, shows the progress, and
-   * sums up at the end.
-   */
+  /// Keeps the record of a run: measures each step, warns of what makes its
+  /// numbers doubtful, writes its row of statistics.csv, shows the progress,
+  /// and sums up at the end.
   template <int dim>
   class Recorder
   {

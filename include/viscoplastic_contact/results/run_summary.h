@@ -41,10 +41,8 @@ namespace Viscoplastic
 
 
 
-  /**
-   * The quantities of interest for the closing words of a run, as
-   * doc/results.md defines them. Absent: what the scene does not have.
-   */
+  /// The quantities of interest for the closing words of a run, as
+  /// doc/results.md defines them. Absent: what the scene does not have.
   template <int dim>
   struct RunSummary
   {

@@ -9,12 +9,10 @@
 
 namespace Viscoplastic
 {
-  /**
-   * What a step has to record: for each quantity its name, its unit, its value
-   * and whether the closing words of a run have it. Recorder::row() makes it,
-   * and so is the one place that knows them; statistics.csv, its labels of
-   * units, the closing words and uncertainty.csv follow from it.
-   */
+  /// What a step has to record: for each quantity its name, its unit, its value
+  /// and whether the closing words of a run have it. Recorder::row() makes it,
+  /// and so is the one place that knows them; statistics.csv, its labels of
+  /// units, the closing words and uncertainty.csv follow from it.
   class StatisticsRow
   {
   public:
@@ -74,12 +72,10 @@ namespace Viscoplastic
 
 
 
-  /**
-   * A table written row by row as comma separated values: the first row fixes
-   * the columns. Each row is flushed, so a run that is killed leaves what it
-   * has computed. The first line has the names of the columns, with labels of
-   * units such as ` [MPa]' behind them where the scene declares units.
-   */
+  /// A table written row by row as comma separated values: the first row fixes
+  /// the columns. Each row is flushed, so a run that is killed leaves what it
+  /// has computed. The first line has the names of the columns, with labels of
+  /// units such as ` [MPa]' behind them where the scene declares units.
   class Statistics
   {
   public:
@@ -89,11 +85,9 @@ namespace Viscoplastic
                const Units       &units,
                const unsigned int dim);
 
-    /**
-     * Go on after the row of step @p last_step of a file, whose first column
-     * counts steps from 0; drops the rows after it. Throws ExcMessage if a row
-     * up to it is missing, before anything changes.
-     */
+    /// Go on after the row of step @p last_step of a file, whose first column
+    /// counts steps from 0; drops the rows after it. Throws ExcMessage if a row
+    /// up to it is missing, before anything changes.
     Statistics(const std::string &file, const unsigned int last_step);
 
     /// Write a row; integers print as such. Throws ExcMessage if that fails,

@@ -10,11 +10,9 @@
 
 namespace Viscoplastic
 {
-  /**
-   * Tells the user what is simulated: the effects of a scene, the size of its
-   * mesh, the linear solver, and what is unusual about them. What may come up
-   * again on later meshes is said once.
-   */
+  /// Tells the user what is simulated: the effects of a scene, the size of its
+  /// mesh, the linear solver, and what is unusual about them. What may come up
+  /// again on later meshes is said once.
   template <int dim>
   class Announcer
   {

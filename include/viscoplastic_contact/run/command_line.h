@@ -43,15 +43,13 @@ namespace Viscoplastic
     std::string log;
   };
 
-  /**
-   * Read the arguments, without the program's name. Throws ExcMessage with a
-   * sentence for the user.
-   *
-   * Boost.Program_options would make this a tenth shorter, for a library more:
-   * it finds what is unknown or missing, but which options go together, and the
-   * sentences, remain. Its own do not say what is missing, and it shows options
-   * with a value that may be left out as `[=arg(=value)]'.
-   */
+  /// Read the arguments, without the program's name. Throws ExcMessage with a
+  /// sentence for the user.
+  ///
+  /// Boost.Program_options would make this a tenth shorter, for a library more:
+  /// it finds what is unknown or missing, but which options go together, and
+  /// the sentences, remain. Its own do not say what is missing, and it shows
+  /// options with a value that may be left out as `[=arg(=value)]'.
   CommandLine
   read_command_line(const std::vector<std::string> &arguments);
 

@@ -1,13 +1,10 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
-#include <viscoplastic_contact/base/console.h>
-#include <viscoplastic_contact/parameters/parameter_file.h>
-#include <viscoplastic_contact/results/run_summary.h>
-#include <viscoplastic_contact/run/command_line.h>
-#include <viscoplastic_contact/run/expectation.h>
+#include <viscoplastic_contact/run/viscoplastic_contact.h>
 
 #include <string>
+#include <vector>
 
 namespace Viscoplastic
 {
@@ -18,20 +15,32 @@ namespace Viscoplastic
   PilotRun
   pilot_run(const Parameters &parameters);
 
-  /**
-   * Run a scene in as many passes as it takes. To the tolerance of a quantity
-   * of interest on adaptive meshes that may be several: what creeps or slips
-   * remembers each mesh, as the estimate of a quantity does not, so that the
-   * mesh a pass has come to is the first one of the next. The displacement of a
-   * body that creeps remembers most, and a pass that needs another mesh ends at
-   * once. Each pass writes its files over those of the one before: the pass
-   * that turns out to be right is the run. Arguments and the result are those
-   * of ViscoplasticContact::run().
-   */
+  /// Run a scene in as many passes as it takes. To the tolerance of a quantity
+  /// of interest on adaptive meshes that may be several: what creeps or slips
+  /// remembers each mesh, as the estimate of a quantity does not, so that the
+  /// mesh a pass has come to is the first one of the next. The displacement of
+  /// a body that creeps remembers most, and a pass that needs another mesh ends
+  /// at once. Each pass writes its files over those of the one before: the pass
+  /// that turns out to be right is the run. Arguments and the result are those
+  /// of ViscoplasticContact::run().
   template <int dim>
   std::string
   run_in_passes(const Parameters          &parameters,
                 Console                   &console,
                 const CommandLine::Restart restart,
                 const RunSummary<dim>     *coarser);
+
+  /// The assignments `Section/Entry=value' that make a scene coarser: one
+  /// refinement less, on adaptive meshes also of the least and the finest
+  /// cells, and half the steps of every phase, but at least one. Throws
+  /// ExcMessage if `Geometry/Global refinements' is 0.
+  std::vector<std::string>
+  coarser_scene(const Parameters &parameters);
+
+  /// Run the coarser scene without a word and without files. Throws ExcMessage
+  /// as a run does. Collective.
+  template <int dim>
+  RunSummary<dim>
+  run_coarser_scene(const Parameters  &parameters,
+                    const CommandLine &command_line);
 } // namespace Viscoplastic

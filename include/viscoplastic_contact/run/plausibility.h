@@ -23,33 +23,27 @@ namespace Viscoplastic
     double t = 0.;
   };
 
-  /**
-   * From the initial stress, tractions, pressures and normal stresses, the body
-   * force times the size of the body, prescribed displacements times Young's
-   * modulus over that size; where there is none of these, from friction bounds.
-   * Of places and times that stand for all. Collective.
-   */
+  /// From the initial stress, tractions, pressures and normal stresses, the
+  /// body force times the size of the body, prescribed displacements times
+  /// Young's modulus over that size; where there is none of these, from
+  /// friction bounds. Of places and times that stand for all. Collective.
   template <int dim>
   LargestStress
   largest_given_stress(const Discretization<dim> &discretization);
 
-  /**
-   * A line for each material: elastic moduli, law with its parameters, and how
-   * fast that law relaxes a uniaxial stress sigma of the size of @p stress,
-   * |sigma|/|G|. Collective.
-   */
+  /// A line for each material: elastic moduli, law with its parameters, and how
+  /// fast that law relaxes a uniaxial stress sigma of the size of @p stress,
+  /// |sigma|/|G|. Collective.
   template <int dim>
   void
   describe_materials(const Discretization<dim> &discretization,
                      const LargestStress       &stress,
                      std::ostream              &out);
 
-  /**
-   * Sentences about a material that has been left at its defaults although the
-   * scene has loads, and, where units are declared, about one that is powers of
-   * ten away from all known ones, or that loads would strain far beyond small
-   * strains. Collective.
-   */
+  /// Sentences about a material that has been left at its defaults although the
+  /// scene has loads, and, where units are declared, about one that is powers
+  /// of ten away from all known ones, or that loads would strain far beyond
+  /// small strains. Collective.
   template <int dim>
   std::vector<std::string>
   implausible_data(const Discretization<dim> &discretization,

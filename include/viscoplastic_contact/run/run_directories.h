@@ -11,11 +11,9 @@
 
 namespace Viscoplastic
 {
-  /**
-   * The directories that a run writes into, that of its results and that of its
-   * checkpoints, and the locks that keep other processes out of them. Member
-   * functions are collective and throw ExcMessage on all ranks.
-   */
+  /// The directories that a run writes into, that of its results and that of
+  /// its checkpoints, and the locks that keep other processes out of them.
+  /// Member functions are collective and throw ExcMessage on all ranks.
   class RunDirectories
   {
   public:

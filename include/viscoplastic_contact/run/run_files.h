@@ -16,12 +16,10 @@
 
 namespace Viscoplastic
 {
-  /**
-   * The files of a run: fields, values along lines, statistics and the record
-   * of the run in the directory of the results, and checkpoints; and when they
-   * are written. Member functions are collective and throw ExcMessage with a
-   * sentence for the user, on all ranks.
-   */
+  /// The files of a run: fields, values along lines, statistics and the record
+  /// of the run in the directory of the results, and checkpoints; and when they
+  /// are written. Member functions are collective and throw ExcMessage with a
+  /// sentence for the user, on all ranks.
   template <int dim>
   class RunFiles
   {

@@ -10,29 +10,28 @@
 
 namespace Viscoplastic
 {
-  /**
-   * What programs that vary a scene need to know of it, as a JSON object:
-   *
-   *   version, revision, ranks     of the program
-   *   file, directory, dimension   of the scene; `directory' is where its
-   *                                results go
-   *   values                       of every entry, without `automatic' where
-   *                                that is replaced when parameters are read
-   *   files                        a checksum of all files that belong to it
-   *   cells, h                     of its first mesh; h is the largest diameter
-   *                                of a cell over sqrt(dim)
-   *   volumetric_integration       what `automatic' stands for
-   *
-   * and @p with_means, see SceneData:
-   *
-   *   means                 by entry, `over_space' and `over_time'; of data
-   *                         that are not their own means
-   *   areas                 of contact boundaries, by id
-   *   nearest_isotropic     Young's modulus and Poisson's ratio, by section of
-   *                         anisotropic materials
-   *
-   * Collective. Throws ExcMessage.
-   */
+  /// What programs that vary a scene need to know of it, as a JSON object:
+  ///
+  ///   version, revision, ranks     of the program
+  ///   file, directory, dimension   of the scene; `directory' is where its
+  ///                                results go
+  ///   values                       of every entry, without `automatic' where
+  ///                                that is replaced when parameters are read
+  ///   files                        a checksum of all files that belong to it
+  ///   cells, h                     of its first mesh; h is the largest
+  ///   diameter
+  ///                                of a cell over sqrt(dim)
+  ///   volumetric_integration       what `automatic' stands for
+  ///
+  /// and @p with_means, see SceneData:
+  ///
+  ///   means                 by entry, `over_space' and `over_time'; of data
+  ///                         that are not their own means
+  ///   areas                 of contact boundaries, by id
+  ///   nearest_isotropic     Young's modulus and Poisson's ratio, by section of
+  ///                         anisotropic materials
+  ///
+  /// Collective. Throws ExcMessage.
   std::string
   scene_as_json(const Parameters &scene,
                 const bool        with_means,

@@ -44,11 +44,9 @@ namespace Viscoplastic
               Console                   &console,
               EvaluatedState<dim>       &initial);
 
-  /**
-   * Everything that can be known without solving: validates the scene with its
-   * mesh, initial data and the data of all times, and prints size, solver and
-   * what memory they need.
-   */
+  /// Everything that can be known without solving: validates the scene with its
+  /// mesh, initial data and the data of all times, and prints size, solver and
+  /// what memory they need.
   template <int dim>
   void
   check_scene(const Parameters &parameters, Console &console);

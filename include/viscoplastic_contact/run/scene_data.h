@@ -12,13 +12,11 @@
 
 namespace Viscoplastic
 {
-  /**
-   * What follows from the data of a scene and its mesh. Means are expressions
-   * of x and t, each component of a vector by itself, that can take the place
-   * of those of the parameter file; nothing for data that are their own means.
-   * Those over space are collective. They throw ExcMessage for what cannot be
-   * parsed.
-   */
+  /// What follows from the data of a scene and its mesh. Means are expressions
+  /// of x and t, each component of a vector by itself, that can take the place
+  /// of those of the parameter file; nothing for data that are their own means.
+  /// Those over space are collective. They throw ExcMessage for what cannot be
+  /// parsed.
   class SceneData
   {
   public:

@@ -10,12 +10,10 @@
 
 namespace Viscoplastic
 {
-  /**
-   * Carries the accepted state of a run to another discretization of the body,
-   * where it finds its equilibrium while friction holds: the next step lets it
-   * slip. Construct one of the classes below on the old discretization, make
-   * the new one, then carry(). Constructors and functions are collective.
-   */
+  /// Carries the accepted state of a run to another discretization of the body,
+  /// where it finds its equilibrium while friction holds: the next step lets it
+  /// slip. Construct one of the classes below on the old discretization, make
+  /// the new one, then carry(). Constructors and functions are collective.
   template <int dim>
   class StateCarrier
   {

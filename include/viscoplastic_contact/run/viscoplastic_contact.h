@@ -13,29 +13,41 @@
 #include <viscoplastic_contact/results/recorder.h>
 #include <viscoplastic_contact/run/announcer.h>
 #include <viscoplastic_contact/run/command_line.h>
-#include <viscoplastic_contact/run/expectation.h>
 #include <viscoplastic_contact/run/run_files.h>
 #include <viscoplastic_contact/time_stepping/time_stepper.h>
 
+#include <functional>
 #include <memory>
 #include <optional>
 
 namespace Viscoplastic
 {
-  /**
-   * The fully discrete problem P^hk (3.18)-(3.20) in total form, for one scene.
-   * This class owns the mesh, the spaces, the matrix and the state, and decides
-   * the order in which its collaborators work:
-   *
-   *     state at t_{n-1} -> rate of z -> load -> contact solver
-   *                      -> statistics, output, checkpoint
-   *                      -> mesh adaptation, before the next step
-   *
-   * Displacements are in V_h, FE_Q(1) in each component (AdmissibleSpace).
-   * Stresses and z are in Q_h, symmetric tensors of FE_DGQ(0), or of its
-   * refinement at the Gauss points, whose cell means are what is reported
-   * (StressSpace).
-   */
+  /// What a run to a tolerance has to know before its first step.
+  struct Expectation
+  {
+    /// About how large the solution becomes, in the energy norm or by its
+    /// quantity of interest. Zero, and @p failure says why, if nobody knows.
+    double      size = 0.;
+    std::string failure;
+  };
+
+  /// Finds that out. Collective.
+  using PilotRun = std::function<Expectation()>;
+
+
+
+  /// The fully discrete problem P^hk (3.18)-(3.20) in total form, for one
+  /// scene. This class owns the mesh, the spaces, the matrix and the state, and
+  /// decides the order in which its collaborators work:
+  ///
+  ///     state at t_{n-1} -> rate of z -> load -> contact solver
+  ///                      -> statistics, output, checkpoint
+  ///                      -> mesh adaptation, before the next step
+  ///
+  /// Displacements are in V_h, FE_Q(1) in each component (AdmissibleSpace).
+  /// Stresses and z are in Q_h, symmetric tensors of FE_DGQ(0), or of its
+  /// refinement at the Gauss points, whose cell means are what is reported
+  /// (StressSpace).
   template <int dim>
   class ViscoplasticContact
   {

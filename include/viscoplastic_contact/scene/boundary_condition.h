@@ -20,11 +20,9 @@ namespace Viscoplastic
   template <int dim>
   struct BoundaryCondition
   {
-    /**
-     * Parses all entries, also those that it does not use. Throws ExcMessage
-     * naming the entry. If there is a @p solution that makes the data, what
-     * follows from it must not be given.
-     */
+    /// Parses all entries, also those that it does not use. Throws ExcMessage
+    /// naming the entry. If there is a @p solution that makes the data, what
+    /// follows from it must not be given.
     BoundaryCondition(const types::boundary_id  id,
                       const BoundaryParameters &parameters,
                       const ExactSolution<dim> *solution = nullptr);
@@ -169,11 +167,9 @@ namespace Viscoplastic
       return normal_stiffness || tangential_stiffness;
     }
 
-    /**
-     * K = k_n nu nu + k_t (I - nu nu), of which springs add -K u to the force
-     * per area, at a point with this outward normal of the face. Throws
-     * ExcMessage where a stiffness is negative.
-     */
+    /// K = k_n nu nu + k_t (I - nu nu), of which springs add -K u to the force
+    /// per area, at a point with this outward normal of the face. Throws
+    /// ExcMessage where a stiffness is negative.
     SymmetricTensor<2, dim>
     spring_stiffness(const Point<dim>     &x,
                      const Tensor<1, dim> &outward_normal) const;
@@ -223,10 +219,8 @@ namespace Viscoplastic
     std::vector<std::string>
     unused_entries(const BoundaryParameters &parameters) const;
 
-    /**
-     * The friction bound rho(x,t): g, or mu |S|, or of a computed pressure mu.
-     * Throws ExcMessage where it is negative.
-     */
+    /// The friction bound rho(x,t): g, or mu |S|, or of a computed pressure mu.
+    /// Throws ExcMessage where it is negative.
     double
     bound(const Point<dim> &x, const double t) const;
 

@@ -11,19 +11,17 @@
 
 namespace Viscoplastic
 {
-  /**
-   * A known solution (u, sigma) of a scene: for the errors of a run, and to
-   * make up a problem that it solves. Then the data follow from it,
-   *
-   *     b = -Div sigma,   F = sigma nu,   S = sigma_nu,   u0, sigma0,
-   *     s = sigma' - E eps(u') - G(t, sigma, eps(u)),
-   *
-   * with the source s added to G, which may depend on x and t. Friction bounds
-   * remain data of the scene, since they do not follow where the body sticks.
-   *
-   * Derivatives are differences of second order over 1e-4 of the size of the
-   * body and of the length of time: right up to some 1e-8.
-   */
+  /// A known solution (u, sigma) of a scene: for the errors of a run, and to
+  /// make up a problem that it solves. Then the data follow from it,
+  ///
+  ///     b = -Div sigma,   F = sigma nu,   S = sigma_nu,   u0, sigma0,
+  ///     s = sigma' - E eps(u') - G(t, sigma, eps(u)),
+  ///
+  /// with the source s added to G, which may depend on x and t. Friction bounds
+  /// remain data of the scene, since they do not follow where the body sticks.
+  ///
+  /// Derivatives are differences of second order over 1e-4 of the size of the
+  /// body and of the length of time: right up to some 1e-8.
   template <int dim>
   class ExactSolution
   {

@@ -9,15 +9,13 @@
 
 namespace Viscoplastic
 {
-  /**
-   * A time at which a datum jumps at these places together, which the theory
-   * excludes: data are Lipschitz continuous in time, (2.10). Found by halving
-   * the intervals with the largest changes until only a jump is left; it has to
-   * be more than a twentieth of the largest values, so that a load that wanders
-   * from place to place is none. Pulses shorter than a 200th of a phase may be
-   * overlooked. Costs nothing where the text of the expression has nothing that
-   * can jump.
-   */
+  /// A time at which a datum jumps at these places together, which the theory
+  /// excludes: data are Lipschitz continuous in time, (2.10). Found by halving
+  /// the intervals with the largest changes until only a jump is left; it has
+  /// to be more than a twentieth of the largest values, so that a load that
+  /// wanders from place to place is none. Pulses shorter than a 200th of a
+  /// phase may be overlooked. Costs nothing where the text of the expression
+  /// has nothing that can jump.
   template <int dim>
   std::optional<double>
   find_jump(const Expression<dim>         &datum,
@@ -25,14 +23,12 @@ namespace Viscoplastic
             const TimeSchedule            &schedule);
 
 
-  /**
-   * A time within a step at which a datum is far from its values at both ends
-   * of the step, so that a run with these steps does not see what it does: a
-   * load that vibrates in time with the steps, or a short blow. Far is two
-   * fifths of the range of its values, summed over the places, so that a load
-   * that wanders is no such datum; nor is a jump or a ramp within a step. In
-   * long runs a single pulse may be overlooked.
-   */
+  /// A time within a step at which a datum is far from its values at both ends
+  /// of the step, so that a run with these steps does not see what it does: a
+  /// load that vibrates in time with the steps, or a short blow. Far is two
+  /// fifths of the range of its values, summed over the places, so that a load
+  /// that wanders is no such datum; nor is a jump or a ramp within a step. In
+  /// long runs a single pulse may be overlooked.
   template <int dim>
   std::optional<double>
   find_unseen_change(const Expression<dim>         &datum,

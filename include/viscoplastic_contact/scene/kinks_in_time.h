@@ -15,17 +15,15 @@ namespace Viscoplastic
     bool   is_jump;
   };
 
-  /**
-   * The times within a run at which a datum has kinks or jumps at these places
-   * together, ascending. Second differences over windows of width w fall like w
-   * at a kink, like w^2 where the datum is smooth: windows in which they do not
-   * fall like w^2 are halved until the time is known to 1e-10 of the end time.
-   * A kink is a change of the derivative by more than a twentieth of the mean
-   * slope over the run, at a tenth of the places or more, so that a load that
-   * wanders from place to place has none. Two within a 200th of a phase may be
-   * taken for one. Costs nothing where the text of the expression has nothing
-   * that can make kinks.
-   */
+  /// The times within a run at which a datum has kinks or jumps at these places
+  /// together, ascending. Second differences over windows of width w fall like
+  /// w at a kink, like w^2 where the datum is smooth: windows in which they do
+  /// not fall like w^2 are halved until the time is known to 1e-10 of the end
+  /// time. A kink is a change of the derivative by more than a twentieth of the
+  /// mean slope over the run, at a tenth of the places or more, so that a load
+  /// that wanders from place to place has none. Two within a 200th of a phase
+  /// may be taken for one. Costs nothing where the text of the expression has
+  /// nothing that can make kinks.
   template <int dim>
   std::vector<Kink>
   find_kinks(const Expression<dim>         &datum,

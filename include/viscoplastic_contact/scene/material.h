@@ -12,25 +12,21 @@
 
 namespace Viscoplastic
 {
-  /**
-   * What one part of the body consists of: its elastic tensor E and thermal
-   * expansion as functions of position, and its law G.
-   *
-   * A material may be absent in some stages of construction. Its cells stay in
-   * the mesh then, without loads, flow or stress, and with a stiffness that is
-   * absent_stiffness times that of the material: what is left of the body does
-   * not feel them, and they follow it.
-   */
+  /// What one part of the body consists of: its elastic tensor E and thermal
+  /// expansion as functions of position, and its law G.
+  ///
+  /// A material may be absent in some stages of construction. Its cells stay in
+  /// the mesh then, without loads, flow or stress, and with a stiffness that is
+  /// absent_stiffness times that of the material: what is left of the body does
+  /// not feel them, and they follow it.
   template <int dim>
   class Material
   {
   public:
-    /**
-     * @p section is the subsection of the parameter file ("Material" or
-     * "Material 2"), in which @p handler stands outside; it names the material
-     * in messages; @p temperature is null in scenes that have none. Throws
-     * ExcMessage for data that cannot be right anywhere.
-     */
+    /// @p section is the subsection of the parameter file ("Material" or
+    /// "Material 2"), in which @p handler stands outside; it names the material
+    /// in messages; @p temperature is null in scenes that have none. Throws
+    /// ExcMessage for data that cannot be right anywhere.
     Material(const std::string                 &section,
              const MaterialParameters          &parameters,
              ParameterHandler                  &handler,

@@ -33,12 +33,10 @@ namespace Viscoplastic
   };
 
 
-  /**
-   * What a scene calls its places, for people: in what a run prints, in the
-   * record of the run and in entries that name a place. The names are those of
-   * `Boundary <id>/Name', `Material <id>/Name', `Output/Points' and
-   * `Output/Lines', and of the physical groups of a mesh file of Gmsh.
-   */
+  /// What a scene calls its places, for people: in what a run prints, in the
+  /// record of the run and in entries that name a place. The names are those of
+  /// `Boundary <id>/Name', `Material <id>/Name', `Output/Points' and
+  /// `Output/Lines', and of the physical groups of a mesh file of Gmsh.
   class PlaceNames
   {
   public:

@@ -10,11 +10,9 @@
 
 namespace Viscoplastic
 {
-  /**
-   * A number whose error is estimated by duality: a column of statistics.csv
-   * that is linear in the displacement and the forces at the end of a step, or
-   * the work of friction, which adds up over the steps.
-   */
+  /// A number whose error is estimated by duality: a column of statistics.csv
+  /// that is linear in the displacement and the forces at the end of a step, or
+  /// the work of friction, which adds up over the steps.
   struct QuantityOfInterest
   {
     enum class Kind

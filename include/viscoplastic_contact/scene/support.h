@@ -3,7 +3,7 @@
 
 #include <deal.II/distributed/tria.h>
 
-#include <viscoplastic_contact/base/ids.h>
+#include <viscoplastic_contact/base/types.h>
 #include <viscoplastic_contact/scene/boundary_condition.h>
 
 #include <optional>
@@ -23,10 +23,8 @@ namespace Viscoplastic
   name_in_columns(const types::boundary_id id);
 
 
-  /**
-   * Nodes of which some components of u are zero: one at a vertex of the coarse
-   * mesh, which every mesh has, or those where boundaries meet.
-   */
+  /// Nodes of which some components of u are zero: one at a vertex of the
+  /// coarse mesh, which every mesh has, or those where boundaries meet.
   template <int dim>
   struct Support
   {
@@ -48,10 +46,8 @@ namespace Viscoplastic
   read_supports(const SupportParameters &parameters);
 
 
-  /**
-   * Find the vertices of points and see whether boundaries meet. Returns what
-   * is allowed but should be known, a sentence each. Throws ExcMessage.
-   */
+  /// Find the vertices of points and see whether boundaries meet. Returns what
+  /// is allowed but should be known, a sentence each. Throws ExcMessage.
   template <int dim>
   std::vector<std::string>
   place_supports(

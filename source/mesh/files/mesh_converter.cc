@@ -3,7 +3,7 @@
 #include <deal.II/base/mpi.h>
 #include <deal.II/base/utilities.h>
 
-#include <viscoplastic_contact/base/resources.h>
+#include <viscoplastic_contact/base/files.h>
 #include <viscoplastic_contact/mesh/files/mesh_converter.h>
 #include <viscoplastic_contact/mesh/files/python.h>
 

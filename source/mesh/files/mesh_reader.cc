@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <viscoplastic_contact/base/ids.h>
+#include <viscoplastic_contact/base/types.h>
 #include <viscoplastic_contact/mesh/files/mesh_reader.h>
 
 #include <cctype>

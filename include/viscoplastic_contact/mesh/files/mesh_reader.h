@@ -10,10 +10,8 @@
 
 namespace Viscoplastic
 {
-  /**
-   * The text of a mesh file, word by word, and the mesh that comes out of it.
-   * All its errors are std::runtime_error that begin with the line.
-   */
+  /// The text of a mesh file, word by word, and the mesh that comes out of it.
+  /// All its errors are std::runtime_error that begin with the line.
   class MeshReader
   {
   public:

@@ -1,13 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <deal.II/base/utilities.h>
 #include <deal.II/grid/cell_id.h>
 #include <deal.II/grid/tria_iterator.h>
 
-#include <viscoplastic_contact/discretization/nested_spaces.h>
-
-#include <algorithm>
-#include <array>
-#include <utility>
+#include <viscoplastic_contact/discretization/bulk_system.h>
 
 namespace Viscoplastic
 {
@@ -280,8 +275,5 @@ namespace Viscoplastic
 
 
 
-  template NodeHierarchy
-  make_node_hierarchy(const AdmissibleSpace<2> &);
-  template NodeHierarchy
-  make_node_hierarchy(const AdmissibleSpace<3> &);
+  VISCOPLASTIC_INSTANTIATE(make_node_hierarchy);
 } // namespace Viscoplastic

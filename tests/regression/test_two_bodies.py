@@ -406,7 +406,8 @@ class Limits(TestCase):
                     result[f"contact_force_{down}"], weight * there, absolute=1e-10
                 )
                 self.assertClose(result["contact_area"], there, absolute=1e-12)
-                self.check_identities(result, 1e-9)
+                # what is added once floated in that instant: 0.05
+                self.check_identities(result, 1e-8)
             # the lower block knows no more than the force, and a little of friction
             alone, loaded = (
                 comes[f"point1_{down}"][0],

@@ -342,7 +342,65 @@ def two_bodies(run, save):
     ]
 
 
-CASES = (hertz, partial_slip, punch, greco, slip_zone, creep, slab_on_bed, two_bodies)
+def indenters(run, save):
+    scene = "literature/indenter"
+    sneddon = "I. N. Sneddon, Int. J. Engng Sci. 3 (1965)"
+    boussinesq = "J. Boussinesq (1885)"
+    punch = run(scene)
+    cone = run(
+        scene,
+        {
+            "Geometry/Boundary ids": "if(id == 2 && x < 2, 4, id)",
+            "Boundary 4/Gap": "0.04/pi*x",
+            "Boundary 4/Foundation displacement": "-0.02*t",
+        },
+    )
+    circle = run(
+        scene,
+        {
+            "Boundary 4/Role": "traction",
+            "Boundary 4/Contact law": "not given",
+            "Boundary 4/Pressure": "0.02/0.91/pi*t",
+            "Boundary 4/Gap": "",
+            "Boundary 4/Foundation displacement": "",
+            "Output/Points": "0, 0; 1, 0",
+        },
+    )
+    return [
+        Row(
+            "flat punch, round",
+            sneddon,
+            "force",
+            0.02 / 0.91,
+            -punch["contact_force_y"][-1],
+            punch,
+        ),
+        Row(
+            "cone",
+            sneddon,
+            "force",
+            0.02 / 0.91,
+            -cone["contact_force_y"][-1],
+            cone,
+        ),
+        *(
+            Row(
+                "pressure on a circle",
+                boussinesq,
+                f"depth {where}",
+                depth,
+                circle[f"point{n}_y"][-1],
+                circle,
+            )
+            for n, where, depth in (
+                (0, "in the middle", 0.04 / np.pi),
+                (1, "at the edge", 0.08 / np.pi**2),
+            )
+        ),
+    ]
+
+
+CASES = (hertz, indenters, partial_slip, punch, greco, slip_zone, creep, slab_on_bed, two_bodies)
 
 
 def make(runner, images):

@@ -80,6 +80,15 @@ namespace Viscoplastic
               mortar_interpolation<dim>(dof_handler,
                                         hanging_nodes,
                                         space.contact_pair(condition));
+            if (space.scene.contact_changes_with_stages())
+              {
+                ContactPair<dim> of_absent = space.contact_pair(condition);
+                of_absent.of_absent        = true;
+                result[id].merge(mortar_interpolation<dim>(dof_handler,
+                                                           hanging_nodes,
+                                                           of_absent));
+                continue;
+              }
             AssertThrow(Utilities::MPI::max(result[id].size(),
                                             dof_handler.get_communicator()) > 0,
                         ExcMessage("Nothing of boundary " +
@@ -234,7 +243,7 @@ namespace Viscoplastic
     // A node's frame is a function of the conditions that meet there, as long
     // as each has one normal. As a bit mask in a vector they travel to the
     // other ranks.
-    const auto [listed, mask] = conditions_at_nodes(
+    const auto [listed, mask, waits] = conditions_at_nodes(
       dof_handler, scene, hanging_cartesian, mortar_rows, node_position);
 
     DistributedVector masks = owned_vector(), ghosted_masks = ghosted_vector();
@@ -288,6 +297,9 @@ namespace Viscoplastic
             for (unsigned int i = 0; i < frame.n_fixed; ++i)
               is_excluded[n * dim + frame.fixed[i]] = true;
           }
+        if (!waits.empty() && waits[n])
+          for (unsigned int d = 0; d < dim; ++d)
+            is_excluded[n * dim + d] = true;
         if (hanging_cartesian.is_constrained(first_dof))
           for (unsigned int d = 0; d < dim; ++d)
             {

@@ -36,9 +36,22 @@ namespace Viscoplastic
             if (const auto dof = cell->vertex_dof_index(v, 0);
                 owned.is_element(dof))
               is_of_body[owned.index_within_set(dof) / dim] = true;
-    const auto is_released = [&](const auto &cell, const std::size_t node) {
-      return scene.has_stages() && is_of_body[node] &&
-             !scene.is_present(cell->material_id());
+    const auto is_contact = [&](const types::boundary_id id) {
+      return scene.boundary.at(id).role == BoundaryRole::contact;
+    };
+    std::vector<bool> waits(
+      scene.contact_changes_with_stages() ? node_position.size() : 0, false);
+    const auto is_released = [&](const auto              &cell,
+                                 const types::boundary_id id,
+                                 const std::size_t        node) {
+      if (!scene.has_stages() || scene.is_present(cell->material_id()))
+        return false;
+      if (!is_of_body[node] && is_contact(id) &&
+          (!scene.boundary.at(id).against ||
+           mortar_rows.at(id).count(owned.nth_index_in_set(node * dim) / dim) ==
+             1))
+        waits[node] = true;
+      return is_of_body[node] || is_contact(id);
     };
 
     // For each owned node the boundaries that it is on.
@@ -57,6 +70,7 @@ namespace Viscoplastic
                         if (owned.is_element(dof) &&
                             !hanging_nodes.is_constrained(dof) &&
                             !is_released(cell,
+                                         ids[i],
                                          owned.index_within_set(dof) / dim))
                           result[owned.index_within_set(dof) / dim] |=
                             std::uint64_t(1) << i;
@@ -91,7 +105,7 @@ namespace Viscoplastic
                                  here[n] == all)
             mask[n] |= bit;
       }
-    return {listed, mask};
+    return {listed, mask, waits};
   }
 
 

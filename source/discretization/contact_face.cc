@@ -165,7 +165,8 @@ namespace Viscoplastic
           {
             const types::boundary_id id        = cell->face(f)->boundary_id();
             const auto              &condition = space.scene.boundary.at(id);
-            if (!condition.has_contact_points())
+            if (!condition.has_contact_points() ||
+                !space.scene.is_present(cell->material_id()))
               continue;
             face_values.reinit(cell, f);
             for (const unsigned int q : face_values.quadrature_point_indices())

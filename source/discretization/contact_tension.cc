@@ -19,7 +19,8 @@ namespace Viscoplastic
                 space.scene.boundary.at(cell->face(f)->boundary_id());
               // Glue is meant to pull.
               if (condition.role != BoundaryRole::contact ||
-                  !condition.is_bilateral() || condition.is_glued())
+                  !condition.is_bilateral() || condition.is_glued() ||
+                  !space.scene.is_present(cell->material_id()))
                 continue;
               Tensor<1, dim> normal;
               for (const unsigned int v : cell->face(f)->vertex_indices())

@@ -21,6 +21,7 @@ namespace Viscoplastic
     for (const auto &cell : space.cells)
       for (const unsigned int f : cell->face_indices())
         if (cell->at_boundary(f) &&
+            space.scene.is_present(cell->material_id()) &&
             ids.count(cell->face(f)->boundary_id()) == 1)
           {
             face_values.reinit(cell, f);

@@ -186,7 +186,7 @@ namespace Viscoplastic
                                 (d == 2 ? 2. : 1.),
                               0.};
                 sample.JxW *=
-                  extent(pair.plane_model, here.position(sample.here));
+                  extent(pair.scene.plane_model(), here.position(sample.here));
                 if (pair.normals == nullptr)
                   sample.there = reference_position<d>(window, x);
                 else

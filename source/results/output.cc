@@ -567,7 +567,8 @@ namespace Viscoplastic
       for (const unsigned int f : space.cells[c]->face_indices())
         {
           const auto cell_face = space.cells[c]->face(f);
-          if (!cell_face->at_boundary())
+          if (!cell_face->at_boundary() ||
+              !scene.is_present(space.cells[c]->material_id()))
             continue;
           const auto     id       = cell_face->boundary_id();
           Tensor<1, dim> normal   = boundary.condition_at(id).normal;

@@ -126,7 +126,9 @@ namespace Viscoplastic
   void
   Announcer<dim>::warn_of_held_faces(const Discretization<dim> &discretization)
   {
-    if (!discretization.face)
+    // Faces of materials that are still to come have no points.
+    if (!discretization.face ||
+        discretization.scene().contact_changes_with_stages())
       return;
     for (const types::boundary_id id : discretization.face->held_boundaries())
       if (held_faces.insert(id).second)

@@ -119,12 +119,48 @@ namespace Viscoplastic
                                 const Discretization<dim> &discretization,
                                 const EvaluatedState<dim> &accepted)
     : StateCarrier<dim>(error_estimator, discretization, accepted)
-    , old_u(accepted.forces.u)
   {
     for (const auto &cell : discretization.space.cells)
       was_present.push_back(
         discretization.scene().is_present(cell->material_id()));
+    // Also of other ranks' cells, which are at nodes of this one.
+    for (const auto &cell :
+         discretization.space.dof_handler.active_cell_iterators())
+      if (!cell->is_artificial() &&
+          !discretization.scene().is_present(cell->material_id()))
+        were_absent.insert(cell->material_id());
   }
+
+
+
+  namespace
+  {
+    /// Let what comes rest on what it touches: the force will show whether it
+    /// does.
+    template <int dim>
+    void
+    hold_new_points(const Discretization<dim>          &discretization,
+                    const std::set<types::material_id> &were_absent,
+                    ContactState                       &contact)
+    {
+      if (were_absent.empty() || contact.n_points() == 0)
+        return;
+      std::set<types::global_dof_index> new_nodes;
+      for (const auto &cell :
+           discretization.space.dof_handler.active_cell_iterators())
+        if (!cell->is_artificial() &&
+            were_absent.count(cell->material_id()) == 1 &&
+            discretization.scene().is_present(cell->material_id()))
+          for (const unsigned int v : cell->vertex_indices())
+            new_nodes.insert(cell->vertex_dof_index(v, 0));
+      const ContactLayout &layout = discretization.face->layout();
+      for (unsigned int p = 0; p < contact.n_points(); ++p)
+        if (const auto &point = layout.points[p];
+            point.is_obstacle && contact.bound[p] <= 0. &&
+            new_nodes.count(discretization.face->first_dof(point.node)) == 1)
+          contact.sticks[p] = true;
+    }
+  } // namespace
 
 
 
@@ -134,10 +170,32 @@ namespace Viscoplastic
                           TimeStepper<dim>          &time_stepper,
                           EvaluatedState<dim>       &accepted)
   {
-    State<dim> &state = accepted.state;
-    // Points of friction are the same in all stages.
-    if (discretization.scene().has_unilateral_contact())
-      state.contact = contact_on_new_mesh(discretization, state, this->density);
+    const AdmissibleSpace<dim> &space = discretization.space;
+    State<dim>                 &state = accepted.state;
+    // What lies opposite to a node may be another rank's in one stage alone.
+    for (DistributedVector *const field : {&state.u,
+                                           &state.velocity,
+                                           &state.initial_u,
+                                           &state.friction_work,
+                                           &this->density})
+      if (field->size() > 0)
+        {
+          DistributedVector owned = space.owned_vector();
+          for (std::size_t i = 0; i < space.owned.n_elements(); ++i)
+            owned.begin()[i] = (*field)(space.owned.nth_index_in_set(i));
+          *field = space.ghosted_vector();
+          *field = owned;
+        }
+    DistributedVector old_u = space.owned_vector();
+    space.to_frames(state.u, old_u);
+    if (discretization.scene().has_unilateral_contact() ||
+        (discretization.face &&
+         discretization.scene().contact_changes_with_stages()))
+      {
+        state.contact =
+          contact_on_new_mesh(discretization, state, this->density);
+        hold_new_points(discretization, were_absent, state.contact);
+      }
     enter_stage(discretization.stress_space, was_present, state);
     time_stepper.settle(accepted);
     this->complete(discretization, 0., 0., accepted);

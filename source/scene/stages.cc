@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <optional>
 #include <sstream>
 
@@ -32,41 +33,6 @@ namespace Viscoplastic
               << end << ".";
       AssertThrow(std::abs(end - t) <= rounding * t, ExcMessage(message.str()));
       return end;
-    }
-
-
-
-    /// Refuse contact and springs of materials that come or go.
-    template <int dim>
-    void
-    inspect_contact_pieces(
-      const Scene<dim>                                &scene,
-      const std::set<types::material_id>              &changing,
-      const parallel::distributed::Triangulation<dim> &triangulation)
-    {
-      if (changing.empty())
-        return;
-      // All ranks have the coarse mesh.
-      for (const auto &cell : triangulation.cell_iterators_on_level(0))
-        if (changing.count(cell->material_id()) == 1)
-          for (const unsigned int f : cell->face_indices())
-            if (cell->at_boundary(f))
-              {
-                const types::boundary_id      id = cell->face(f)->boundary_id();
-                const BoundaryCondition<dim> &condition = scene.boundary.at(id);
-                const bool                    is_contact =
-                  condition.role == BoundaryRole::contact ||
-                  scene.is_other_side(id);
-                AssertThrow(!is_contact && !condition.has_springs(),
-                            ExcMessage(
-                              "Boundary " + std::to_string(id) + " has " +
-                              (is_contact ? "contact" : "springs") +
-                              " and a part in '" +
-                              scene.material(cell->material_id()).section +
-                              "', which is added or removed; the pieces " +
-                              (is_contact ? "in contact" : "with springs") +
-                              " have to stay the same."));
-              }
     }
   } // namespace
 
@@ -152,7 +118,75 @@ namespace Viscoplastic
                     ExcMessage(message.str()));
       }
     enter_stage(0);
-    inspect_contact_pieces(*this, changing, triangulation);
+    inspect_contact_of_stages(changing, triangulation);
+  }
+
+
+
+  template <int dim>
+  void
+  Scene<dim>::inspect_contact_of_stages(
+    const std::set<types::material_id>              &changing,
+    const parallel::distributed::Triangulation<dim> &triangulation)
+  {
+    // All ranks have the coarse mesh.
+    std::vector<typename Triangulation<dim>::cell_iterator> others;
+    for (const auto &cell : triangulation.cell_iterators_on_level(0))
+      for (const unsigned int f : cell->face_indices())
+        if (cell->at_boundary(f))
+          {
+            const types::boundary_id id = cell->face(f)->boundary_id();
+            const bool is_changed = changing.count(cell->material_id()) == 1;
+            AssertThrow(!is_changed || !boundary.at(id).has_springs(),
+                        ExcMessage("Boundary " + std::to_string(id) +
+                                   " has springs and a part in '" +
+                                   material(cell->material_id()).section +
+                                   "', which is added or removed; the pieces "
+                                   "with springs have to stay the same."));
+            has_changing_contact |=
+              is_changed && (boundary.at(id).role == BoundaryRole::contact ||
+                             is_other_side(id));
+            if (is_changed && is_other_side(id))
+              others.push_back(cell);
+          }
+    if (others.empty())
+      return;
+
+    // Of each vertex the first one of its body.
+    std::vector<unsigned int> first(triangulation.n_vertices());
+    std::iota(first.begin(), first.end(), 0);
+    for (bool is_done = false; !is_done;)
+      {
+        is_done = true;
+        for (const auto &cell : triangulation.cell_iterators_on_level(0))
+          {
+            unsigned int least = first[cell->vertex_index(0)];
+            for (const unsigned int v : cell->vertex_indices())
+              least = std::min(least, first[cell->vertex_index(v)]);
+            for (const unsigned int v : cell->vertex_indices())
+              {
+                is_done &= first[cell->vertex_index(v)] == least;
+                first[cell->vertex_index(v)] = least;
+              }
+          }
+      }
+    for (unsigned int n = 0; n <= stage_ends.size(); ++n)
+      {
+        enter_stage(n);
+        std::set<unsigned int> present;
+        for (const auto &cell : triangulation.cell_iterators_on_level(0))
+          if (is_present(cell->material_id()))
+            present.insert(first[cell->vertex_index(0)]);
+        for (const auto &cell : others)
+          AssertThrow(present.count(first[cell->vertex_index(0)]) == 1,
+                      ExcMessage(
+                        "'" + lasting_material(cell->material_id()).section +
+                        "' is absent for a time, and with it the whole of a "
+                        "body that another one is 'Against'. Let the body that "
+                        "comes or goes have the contact, 'Against' the one "
+                        "that stays: it follows that until it comes."));
+      }
+    enter_stage(0);
   }
 
 
@@ -192,6 +226,14 @@ namespace Viscoplastic
 
 
 
+  template void
+  Scene<2>::inspect_contact_of_stages(
+    const std::set<types::material_id> &,
+    const parallel::distributed::Triangulation<2> &);
+  template void
+  Scene<3>::inspect_contact_of_stages(
+    const std::set<types::material_id> &,
+    const parallel::distributed::Triangulation<3> &);
   template void
   Scene<2>::find_stages(const parallel::distributed::Triangulation<2> &);
   template void

@@ -342,9 +342,9 @@ namespace Viscoplastic
     for (unsigned int p = 0; p < contact.n_points(); ++p)
       {
         const ContactLayout::Point &point = face.points[p];
-        // Nothing holds a point without friction, or off the foundation.
-        contact.sticks[p] = point.is_obstacle ? contact.multiplier[p][0] > 0. :
-                                                contact.bound[p] > 0.;
+        // Nothing holds a point without friction.
+        if (!point.is_obstacle)
+          contact.sticks[p] = contact.bound[p] > 0.;
         if (point.gives_way())
           face.set_node_values(face.node_values(force, point.node) +
                                  node_force(point, contact.multiplier[p]),

@@ -297,6 +297,86 @@ class Contact(TestCase):
         )
         self.assertLess(ball["force_balance_defect"].max(), 1e-9)
 
+    def test_indenters(self):
+        """Punch, cone and a pressure on a circle (Sneddon, Boussinesq)."""
+
+        def indent(refinements, ids="x < 1", **more):
+            return run(
+                "literature/indenter",
+                {
+                    "Geometry/Global refinements": refinements,
+                    "Geometry/Boundary ids": f"if(id == 2 && {ids}, 4, id)",
+                    **{f"Boundary 4/{k.replace('_', ' ')}": v for k, v in more.items()},
+                    "Output/Points": "0, 0; 1, 0",
+                    "Output/Fields every": 1,
+                },
+            )
+
+        modulus = 1 / (1 - 0.3**2)
+        punches = [indent(n) for n in (1, 2, 3)]
+        force = np.array([-punch["contact_force_y"][-1] for punch in punches])
+        errors = force / (0.02 * modulus) - 1
+        # measured: 0.146, 0.066, 0.031
+        self.assertClose(np.log2(errors[:-1] / errors[1:]), 1.1, absolute=0.1)
+        face = punches[-1].fields("contact")
+        r, pressure = face.points[:, 0], face.point_data["contact_pressure"]
+        inner = r < 0.7
+        known = 0.01 * modulus / np.pi / np.sqrt(1 - r[inner] ** 2)
+        # measured: 0.03 to 0.045; the node at the edge carries more
+        self.assertClose(pressure[inner], known, relative=0.05)
+
+        # of the same force and radius, and twice as deep
+        cone = indent(
+            3, "x < 2", Gap="0.04/pi*x", Foundation_displacement="-0.02*t"
+        )
+        # measured: 0.003; the radius to a cell
+        self.assertClose(-cone["contact_force_y"][-1], 0.02 * modulus, relative=0.004)
+        self.assertClose(np.sqrt(cone["contact_area"][-1] / np.pi), 1, absolute=0.125)
+
+        circle = indent(
+            3,
+            Role="traction",
+            Contact_law="not given",
+            Pressure=f"{0.02 * modulus / np.pi}*t",
+            Foundation_displacement="",
+            Gap="",
+        )
+        deep = 0.04 / np.pi
+        self.assertClose(circle["point0_y"][-1], deep, relative=2e-3)
+        self.assertClose(circle["point1_y"][-1], deep * 2 / np.pi, relative=0.015)
+
+    def test_boussinesq(self):
+        """A force at a point of the surface, which a hole of radius 1 leaves out:
+        first order, and the estimate is the error."""
+        size, far = f"{1.3 / 2 / np.pi}*t", "sqrt(x^2 + y^2)"
+        moved = {
+            "Role": "displacement",
+            "Displacement": (
+                f"{size}*(x*y/{far}^3 - 0.4*x/({far}*({far} + y))); "
+                f"{size}*(1.4/{far} + y^2/{far}^3)"
+            ),
+        }
+        errors = []
+        for refinements in 2, 3:
+            shell = compute(
+                {
+                    **RING,
+                    "Geometry/Generator": "quarter_hyper_shell",
+                    "Geometry/Arguments": "0, 0 : 1 : 2 : 4 : true",
+                    "Geometry/Global refinements": refinements,
+                    **boundaries(moved, moved, "symmetry", "free"),
+                    "Time/Phases": "1: 1",
+                    "Output/Fields every": 0,
+                    "Exact solution/Displacement": moved["Displacement"],
+                }
+            )
+            errors.append(error(shell))
+            # measured: 1.04, 1.02
+            effectivity = shell["estimate_total"][-1] / shell["error_energy"][-1]
+            self.assertClose(effectivity, 1.03, absolute=0.05)
+        # measured: 0.145, 0.073
+        self.assertClose(np.log2(errors[0] / errors[1]), 1, absolute=0.05)
+
     def test_beds(self):
         """A solid cylinder pressed onto beds of all kinds: a uniform state, on the
         axis, too."""

@@ -5,6 +5,7 @@ do to the history."""
 
 import numpy as np
 from scipy.integrate import solve_ivp
+from scipy.signal import residue
 
 from harness import TestCase, main, run
 from runs import EVERY_STEP, Job, without_wall_times
@@ -290,6 +291,48 @@ class Scenes(TestCase):
             }
             columns = "friction_dissipation", "viscous_dissipation", "stored_energy"
             self.against_zener("slab", more, ("max_displacement", *columns), 1e-7)
+
+    def test_thick_cylinder(self):
+        """Under a pressure inside, without strain along the axis, radial and hoop
+        stresses are those of elasticity at all times (Lame), so that
+        u_r = (A r/(K + mu/3) + B/(mu r))/2 with mu = 1/J in the transformed time."""
+        moduli = {"Maxwell viscosity": 4.0, "Kelvin modulus": 0.6,
+                  "Kelvin viscosity": 0.3}  # fmt: skip
+        eta, mu_k, eta_k = moduli.values()
+        bulk, t = E / (3 - 6 * NU), 2.0
+        A, B = 1 / 3, 4 / 3  # of radii 1 and 2 and a pressure of 1
+        # J = top/bottom, and 1/(K + mu/3) = 3 J/(3 K J + 1), of a step at t = 0
+        bottom = np.polymul([eta, 0], [eta_k, mu_k])
+        top = np.polyadd(bottom / MU, [eta + eta_k, mu_k])
+        whole = np.polyadd(3 * bulk * top, bottom)
+        residues, poles, _ = residue(3 * top, np.polymul(whole, [1, 0]))
+        dilation = (residues @ np.exp(poles * t)).real
+        compliance = 1 / MU + t / eta + (1 - np.exp(-t * mu_k / eta_k)) / mu_k
+        errors = []
+        for n in 1, 2:
+            ring = compute(
+                {
+                    "Dimension": 2,
+                    "Geometry/Plane model": "axisymmetric",
+                    "Geometry/Arguments": f"{8 * n}, 1 : 1, 0 : 2, 0.25 : true",
+                    **{f"Boundary {i}/Role": "symmetry" for i in (2, 3)},
+                    "Boundary 0/Role": "traction",
+                    "Boundary 0/Pressure": 1,
+                    "Boundary 1/Role": "free",
+                    "Initial state/Equilibrate": "true",
+                    "Time/Scheme": "Heun",
+                    "Time/Phases": f"{t}: {16 * n}",
+                    "Output/Points": "1, 0; 2, 0",
+                    "Output/Fields every": 0,
+                    **material("burgers", moduli),
+                }
+            )
+            known = [(A * r * dilation + B / r * compliance) / 2 for r in (1, 2)]
+            found = [ring[f"point{i}_x"][-1] for i in (0, 1)]
+            errors.append(max(abs(np.divide(found, known) - 1)))
+        # measured: 1.32e-3, 3.2e-4
+        self.assertLess(errors[1], 4e-4)
+        self.assertGreater(np.log2(errors[0] / errors[1]), 1.9)
 
     ADAPTIVE = {
         "Mesh refinement/Cell budget": 500,

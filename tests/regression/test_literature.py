@@ -128,6 +128,52 @@ class Published(TestCase):
         # friction counts
         self.assertLess(smooth["max_pressure"][-1], 0.95 * rough["max_pressure"][-1])
 
+    def test_stacked_blocks(self):
+        """MOOSE, modules/contact/test/tests/3d-mortar-contact/frictional-mortar-3d.i: a
+        cube of 3^3 cells on a plate of 10 x 10 x 2 that is clamped around and ten times
+        as stiff, pressed by 1e-3 with the friction coefficient 0.4. The files of results
+        have the friction at the nodes of the cube: the corners stick, nodes at the edges
+        slip, the middle is free. Its cells have the mean volumetric strain, too; strains
+        are 2e-3 there, of finite deformations."""
+        result = run(
+            "two_blocks_3d",
+            {
+                "Geometry/Arguments": "10, 10, 2 : -0.5, -0.5, -0.3 : 0.5, 0.5, -0.25 : "
+                "true | 3, 3, 3 : -0.25, -0.25, -0.25 : 0.25, 0.25, 0.25 : true",
+                "Material/Volumetric integration": "mean dilatation",
+                "Material 0/Young's modulus": 1e5,
+                "Material 0/Poisson's ratio": 0,
+                "Material 1/Young's modulus": 1e4,
+                "Material 1/Poisson's ratio": 0,
+                **{f"Boundary {n}/Role": "clamped" for n in range(4)},
+                **{f"Boundary {n}/Role": "free" for n in (4, 5, 20, 22)},
+                "Boundary 5/Against": "",
+                "Boundary 24/Role": "contact",
+                "Boundary 24/Against": 5,
+                "Boundary 24/Contact law": "unilateral",
+                "Boundary 24/Friction law": "coulomb",
+                "Boundary 24/Friction coefficient": 0.4,
+                "Boundary 25/Role": "displacement",
+                "Boundary 25/Displacement": "0; 0; -0.25*sin(2*pi*0.025/40)*t",
+                "Output/Points": "",
+                "Output/Fields every": 1,
+            },
+        )
+        face = result.fields("contact")
+        for x, friction, error in (
+            ((-1 / 4, -1 / 4), (4.8648, 4.8707), 0.006),
+            ((-1 / 4, -1 / 12), (2.8776, 0.8545), 0.002),
+            ((-1 / 12, -1 / 12), (0, 0), 0),
+        ):
+            place = abs(face.points[:, :2] - x).sum(axis=1).argmin()
+            found = face.point_data["traction"][place, :2]
+            # measured: 0.005 and 0.001 of them
+            self.assertClose(
+                found, friction, absolute=error * np.linalg.norm(friction)
+            )
+            sticks = face.point_data["stick"][place]
+            self.assertEqual(sticks, 1 if x[1] == -1 / 4 else 0)
+
     def test_punch_with_friction(self):
         """Spence: between two points of friction, and what the closed form leaves
         out (0.006)."""

@@ -133,6 +133,15 @@ SCENES = {
     },
     "literature": {
         "verification/literature/greco_plate": Scene(cells(16, 16, to="0.04, 0.04")),
+        # a cone
+        "verification/literature/indenter": Scene(
+            {
+                "Geometry/Global refinements": 1,
+                "Geometry/Boundary ids": "if(id == 2 && x < 2, 4, id)",
+                "Boundary 4/Gap": "0.04/pi*x",
+                "Boundary 4/Foundation displacement": "-0.02*t",
+            }
+        ),
         # with the jump
         "verification/literature/leaning_bar": Scene(),
         "verification/literature/punch_with_friction": Scene(

@@ -331,8 +331,8 @@ class Refused(TestCase):
                 "rigid motion free from t = 1 on.*translation along y",
             ),
             (
-                {"Boundary 3/Role": "contact", "Boundary 3/Friction law": "none"},
-                "Boundary 3 has contact and a part in 'Material 2'",
+                {"Boundary 3/Role": "traction", "Boundary 3/Normal stiffness": 1},
+                "Boundary 3 has springs and a part in 'Material 2'",
             ),
             (
                 {

@@ -505,6 +505,121 @@ class Limits(TestCase):
             self.assertLess(result["strain_energy"][-1], 1e-17)
 
 
+class Stages(TestCase):
+    """Faces in contact that come or go."""
+
+    def stages(self, dim, ranks, **more):
+        """The upper block, which has the contact, comes or goes at t = 1."""
+        lower, upper, top = (3, 22, 23) if dim == 2 else (5, 24, 25)
+        side = "0.5, " * (dim - 1)
+        contact = {"Role": "contact", "Against": lower, "Contact law": "unilateral",
+                   "Friction law": "coulomb", "Friction coefficient": 0.3}  # fmt: skip
+        return run(
+            f"two_blocks_{dim}d",
+            {
+                **TIGHT,
+                f"Boundary {lower}/Role": "free",
+                f"Boundary {lower}/Against": "",
+                **{f"Boundary {upper}/{k}": v for k, v in contact.items()},
+                f"Boundary {top}/Pressure": 0,
+                "Loads/Body force": "0; " * (dim - 1) + "-0.01",
+                "Initial state/Equilibrate": "true",
+                "Time/Phases": "1: 1, 2: 2",
+                "Output/Points": f"{side}1e-9; {side}0.5",
+                **more,
+            },
+            ranks=ranks,
+        )
+
+    def test_stages_of_contact(self):
+        """A body that comes rests on the other one with its weight from then on, and
+        takes it along when it goes; with hanging nodes, on ranks."""
+        for dim, ranks, solver in (
+            (2, 1, "direct"),
+            (2, 2, "multigrid"),
+            (3, 3, "algebraic multigrid"),
+        ):
+            down = "xyz"[dim - 1]
+            common = {
+                "Solver/Linear solver": solver,
+                "Geometry/Boundary refinements": "22: 1" if dim == 2 else "24: 1",
+            }
+            # nobody is there before, nor after
+            always = self.stages(dim, ranks, **common)
+            weight = always[f"contact_force_{down}"][-1]
+            self.assertClose(weight, -0.01, absolute=1e-10)
+            comes, goes = (
+                self.stages(dim, ranks, **{**common, f"Material 1/{when}": 1})
+                for when in ("Added at", "Removed at")
+            )
+            for result, is_there in ((comes, (0, 0, 1, 1)), (goes, (1, 1, 0, 0))):
+                there = np.array(is_there)
+                self.assertClose(
+                    result[f"contact_force_{down}"], weight * there, absolute=1e-10
+                )
+                self.assertClose(result["contact_area"], there, absolute=1e-12)
+                # what is added once floated in that instant: 0.05
+                self.check_identities(result, 1e-8)
+            # the lower block knows no more than the force, and a little of friction
+            alone, loaded = (
+                comes[f"point1_{down}"][0],
+                always[f"point1_{down}"][-1],
+            )
+            self.assertClose(goes[f"point1_{down}"][-1], alone, absolute=1e-7)
+            self.assertClose(comes[f"point1_{down}"][-1], loaded, relative=0.02)
+            self.assertGreater(abs(loaded / alone), 1.5)
+
+    def test_stages_of_a_part(self):
+        """The left half of the upper block, or what it rests on there."""
+        for ids, forces, area in (
+            ("if(y < 1, 0, if(x < 0.5, 2, 1))", (-0.01, -0.005), 1 / 2),
+            # with the node between them, which belongs to neither
+            ("if(y < 1, if(x < 0.5 && y > 0.8, 2, 0), 1)", (-0.01, -0.01), 7 / 16),
+        ):
+            part = {
+                "Geometry/Arguments": "10, 10 : 0, 0 : 1, 1 : true | "
+                "8, 8 : 0, 1 : 1, 2 : true",
+                "Geometry/Material ids": ids,
+                "Material 2/Young's modulus": 2,
+                "Material 2/Poisson's ratio": 0.2,
+            }
+            for when, order in (("Removed at", 1), ("Added at", -1)):
+                for ranks in 1, 3:
+                    result = self.stages(2, ranks, **part, **{f"Material 2/{when}": 1})
+                    # an absent cell weighs on the others with its stiffness
+                    self.assertClose(
+                        result["contact_force_y"][1:3], forces[::order], absolute=1e-7
+                    )
+                    self.assertClose(
+                        result["contact_area"][1:3], (1, area)[::order], absolute=1e-12
+                    )
+                    self.check_identities(result, 1e-7)
+
+    def test_stages_of_contact_on_changing_meshes(self):
+        """Cells and forces are the same on ranks, and nothing is said of a face whose
+        body has not come."""
+        results = [
+            self.stages(
+                2,
+                ranks,
+                **{
+                    "Material 1/Added at": 1,
+                    "Boundary 23/Pressure": "0.01*max(t - 1, 0)*(1 + x)",
+                    "Mesh refinement/Strategy": "residual",
+                    "Mesh refinement/Every n steps": 1,
+                    "Mesh refinement/Cell budget": 400,
+                },
+            )
+            for ranks in (1, 3)
+        ]
+        self.assertNotIn("nothing slips or opens", results[0].stdout)
+        self.assertGreater(len(set(results[0]["cells"])), 2)
+        self.assertClose(results[1]["cells"], results[0]["cells"])
+        for result in results:
+            # the weight, and a mean pressure of 0.015
+            self.assertClose(result["contact_force_y"][-1], -0.025, absolute=1e-8)
+
+
 class Slip(TestCase):
     """A block that is pressed on a larger one and pushed along it."""
 
@@ -842,7 +957,7 @@ class Refused(TestCase):
             ({"Boundary 3/Role": "free"}, "are not connected"),
             (
                 {"Material 1/Removed at": 0.5, "Time/Phases": "0.5: 1, 1: 1"},
-                "Boundary 22 has contact and a part in 'Material 1', which is added or",
+                "the whole of a body that another one is 'Against'",
             ),
             ({"Boundary 20/Role": "free"}, "of one of the 2 bodies"),
         ):

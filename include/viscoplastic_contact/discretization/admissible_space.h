@@ -223,7 +223,7 @@ namespace Viscoplastic
               *condition.against,
               condition.normal,
               condition.normal_varies ? surface_normals.get() : nullptr,
-              scene.plane_model()};
+              scene};
     }
 
     /// Write the prescribed values at time t into a vector in frames.

@@ -22,12 +22,17 @@ namespace Viscoplastic
   {
     std::vector<const BoundaryCondition<dim> *> conditions;
     std::vector<std::uint64_t>                  mask;
+    /// Whether a node is of absent materials alone, whose contact is still to
+    /// come or gone: it stays where it is, or follows what lies opposite. Empty
+    /// where contact is the same in all stages.
+    std::vector<bool> waits;
   };
 
   /**
    * Which conditions the nodes of a mesh carry: those of the boundary faces
    * that they are on, but not of absent materials beside the body, of contact
-   * with another body where nothing lies opposite, or at hanging nodes.
+   * of absent materials, or with another body where nothing lies opposite, or
+   * at hanging nodes.
    * @p node_position: of each owned node. Owners know all ids at their nodes,
    * since every neighbor of an owned cell is at least a ghost. Throws
    * ExcMessage where there are more than 52 conditions.

@@ -83,6 +83,9 @@ namespace Viscoplastic
         if (!cell->is_artificial())
           for (const unsigned int f : cell->face_indices())
             if (cell->at_boundary(f) && cell->face(f)->boundary_id() == id &&
+                ((id == pair.primary && pair.of_absent) ||
+                 pair.scene.is_present(cell->material_id()) !=
+                   pair.of_absent) &&
                 (pair.normals != nullptr ||
                  sign * ((cell->face(f)->center() - cell->center()) *
                          pair.normal) >

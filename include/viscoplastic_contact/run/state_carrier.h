@@ -82,7 +82,7 @@ namespace Viscoplastic
           EvaluatedState<dim>       &accepted);
 
   private:
-    std::vector<bool> was_present; // by cell
-    DistributedVector old_u;
+    std::vector<bool>            was_present; // by cell
+    std::set<types::material_id> were_absent;
   };
 } // namespace Viscoplastic

@@ -82,6 +82,13 @@ namespace Viscoplastic
       return has_changing_materials;
     }
 
+    /// Whether faces in contact, on either side, come or go with them.
+    bool
+    contact_changes_with_stages() const
+    {
+      return has_changing_contact;
+    }
+
     /// The present stage of construction, from 0 on.
     unsigned int
     stage() const
@@ -341,6 +348,12 @@ namespace Viscoplastic
     void
     find_stages(const parallel::distributed::Triangulation<dim> &triangulation);
 
+    /// Whether contact changes with them; refuse what cannot change.
+    void
+    inspect_contact_of_stages(
+      const std::set<types::material_id>              &changing,
+      const parallel::distributed::Triangulation<dim> &triangulation);
+
     /// What follows from an exact solution, and refuse it from elsewhere.
     void
     derive_data();
@@ -368,6 +381,6 @@ namespace Viscoplastic
     std::map<types::material_id, Entry>                 entries;
     std::map<types::material_id, const Material<dim> *> material_of_id;
     unsigned int                                        present_stage = 0;
-    bool has_changing_materials                                       = false;
+    bool has_changing_materials = false, has_changing_contact = false;
   };
 } // namespace Viscoplastic

@@ -14,6 +14,8 @@ energy. Fields of outputs have single precision, hence 1e-6 where they are
 compared.
 """
 
+import tempfile
+
 import numpy as np
 
 from harness import DEFECTS, EFFORT, TestCase, main, run
@@ -228,6 +230,37 @@ class Greco(Contact):
                 # 41 with a fixed point; then the load grows in proportion
                 self.assertLess(result["contact_iterations"][1], 14)
                 self.assertEqual(result["contact_iterations"][2:].sum(), 0)
+
+    def test_price(self):
+        """By multigrid, against bounds that are given, those that have come out: at
+        most 1.5 times the corrections and linear iterations. Measured: 12 for 11,
+        69 for 55."""
+        multigrid = {
+            **self.PLATE,
+            "Geometry/Arguments": "8, 8 : 0, 0 : 0.04, 0.04 : true",
+            "Geometry/Global refinements": 4,
+            "Solver/Linear solver": "multigrid",
+            "Time/Phases": "1: 1",
+        }
+        law = run("greco", multigrid, text="")
+        fields = law.fields("contact")
+        nodes = fields.nodes()
+        x, bound = fields.points[nodes, 0], fields.point_data["bound"][nodes]
+        with tempfile.NamedTemporaryFile("w", suffix=".csv") as table:
+            table.write("x, bound\n")
+            for i in np.argsort(x):
+                table.write(f"{x[i]:.9g}, {bound[i]:.9g}\n")
+            table.flush()
+            given = {
+                "Table 1/File": table.name,
+                "Table 1/Outside": "constant",
+                "Boundary 2/Friction law": "tresca",
+                "Boundary 2/Friction bound": "bound(x)*t",
+            }
+            tresca = run("greco", {**multigrid, **given}, text="")
+        self.assertClose(tresca["point0_x"][-1], law["point0_x"][-1], relative=1e-3)
+        for name in "contact_iterations", "linear_iterations":
+            self.assertLess(law[name].sum(), 1.5 * tresca[name].sum(), name)
 
 
 class HardCases(Contact):

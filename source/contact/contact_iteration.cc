@@ -15,6 +15,10 @@ namespace Viscoplastic
   {
     /// The relative tolerance of linear solves as long as the sets change.
     constexpr double loose_tolerance = 0.05;
+    /// The same where bounds follow the pressure. The preconditioner is that of
+    /// the symmetric part, so each power of ten takes more iterations, and an
+    /// iteration of GMRES more than one of conjugate gradients.
+    constexpr double loose_tolerance_of_law = 0.2;
     /// A correction that stops at reversing slips is taken as it is if it goes
     /// that far; otherwise something better is tried.
     constexpr double least_limited_step = 0.5;
@@ -287,11 +291,13 @@ namespace Viscoplastic
     // Loosely while the sets still change, and as far as needed once they do
     // not.
     // From zero, the first solution sets the scale.
-    double reduction =
-      same_sets ? std::clamp(safety * tolerance * size / error,
-                             std::min(safety * tolerance, loose_tolerance),
-                             loose_tolerance) :
-                  loose_tolerance;
+    const double loose =
+      bounds && bounds->follow() ? loose_tolerance_of_law : loose_tolerance;
+    double      reduction = same_sets ?
+                              std::clamp(safety * tolerance * size / error,
+                                    std::min(safety * tolerance, loose),
+                                    loose) :
+                              loose;
     const Timer timer;
     report.linear_iterations += bulk.correct(force, reduction, w);
     correction_seconds += timer.wall_time();

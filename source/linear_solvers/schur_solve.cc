@@ -33,14 +33,24 @@ namespace Viscoplastic
       vmult(Vector<double> &y, const Vector<double> &x) const
       {
         // x lies in the truncated space, where the iteration keeps it.
+        S.vmult(y, motion(x));
+        complete(x, y);
+      }
+
+      /// What S acts on.
+      Vector<double>
+      motion(const Vector<double> &x) const
+      {
+        Vector<double> result(x);
         if (truncation.transposed)
-          {
-            Vector<double> motion(x);
-            truncation.tilt_motions(face, motion);
-            S.vmult(y, motion);
-          }
-        else
-          S.vmult(y, x);
+          truncation.tilt_motions(face, result);
+        return result;
+      }
+
+      /// From y = S motion(x) to the product.
+      void
+      complete(const Vector<double> &x, Vector<double> &y) const
+      {
         truncation.tilt_equations(face, y);
         for (unsigned int n = 0; n < face.n_nodes(); ++n)
           face.set_node_values(truncation.projector[n] *
@@ -75,7 +85,14 @@ namespace Viscoplastic
             unit    = 0.;
             unit[j] = 1.;
             system.truncation.project(system.face, unit);
-            system.vmult(column, unit);
+            // Of one node: the product would be that of a whole vector.
+            const Vector<double> motion = system.motion(unit);
+            column                      = 0.;
+            for (unsigned int k = 0; k < motion.size(); ++k)
+              if (motion[k] != 0.)
+                for (unsigned int i = 0; i < column.size(); ++i)
+                  column[i] += system.S(i, k) * motion[k];
+            system.complete(unit, column);
             for (unsigned int i = 0; i < scale.size(); ++i)
               matrix(i, j) = scale[i] * column[i] * scale[j] -
                              scale[j] / scale[i] * unit[i] + (i == j ? 1. : 0.);

@@ -14,6 +14,8 @@ energy. Fields of outputs have single precision, hence 1e-6 where they are
 compared.
 """
 
+import tempfile
+
 import numpy as np
 
 from harness import DEFECTS, EFFORT, TestCase, main, run
@@ -229,6 +231,37 @@ class Greco(Contact):
                 self.assertLess(result["contact_iterations"][1], 14)
                 self.assertEqual(result["contact_iterations"][2:].sum(), 0)
 
+    def test_price(self):
+        """By multigrid, against bounds that are given, those that have come out: at
+        most 1.5 times the corrections and linear iterations. Measured: 12 for 11,
+        69 for 55."""
+        multigrid = {
+            **self.PLATE,
+            "Geometry/Arguments": "8, 8 : 0, 0 : 0.04, 0.04 : true",
+            "Geometry/Global refinements": 4,
+            "Solver/Linear solver": "multigrid",
+            "Time/Phases": "1: 1",
+        }
+        law = run("greco", multigrid, text="")
+        fields = law.fields("contact")
+        nodes = fields.nodes()
+        x, bound = fields.points[nodes, 0], fields.point_data["bound"][nodes]
+        with tempfile.NamedTemporaryFile("w", suffix=".csv") as table:
+            table.write("x, bound\n")
+            for i in np.argsort(x):
+                table.write(f"{x[i]:.9g}, {bound[i]:.9g}\n")
+            table.flush()
+            given = {
+                "Table 1/File": table.name,
+                "Table 1/Outside": "constant",
+                "Boundary 2/Friction law": "tresca",
+                "Boundary 2/Friction bound": "bound(x)*t",
+            }
+            tresca = run("greco", {**multigrid, **given}, text="")
+        self.assertClose(tresca["point0_x"][-1], law["point0_x"][-1], relative=1e-3)
+        for name in "contact_iterations", "linear_iterations":
+            self.assertLess(law[name].sum(), 1.5 * tresca[name].sum(), name)
+
 
 class HardCases(Contact):
     def check_both(self, check, contact, plate, more=None, ranks=(1, 1)):
@@ -408,8 +441,8 @@ class HardCases(Contact):
     def test_price_of_reversal_and_turn(self):
         """Load, slip to one side and back, in space in a circle: with the pressure
         of the step at most 1.5 times what bounds of the same size take that are
-        given, those of the pressure before. Measured: 0.83, 1.03 and 1.13 of the
-        corrections, 0.96, 1.11 and 1.32 of the linear iterations."""
+        given, those of the pressure before. Measured: 0.80, 0.98 and 1.14 of the
+        corrections, 0.90, 1.00 and 1.38 of the linear iterations."""
         push = "0.05*if(t < 0.5, 0, if(t < 1, t - 0.5, 1.5 - t))"
         turn = "0.02*(1 - cos(2*pi*max(0, t - 0.5))); 0.02*sin(2*pi*max(0, t - 0.5))"
         flow = {

@@ -1120,5 +1120,46 @@ class LapJoint(TestCase):
         self.assertClose(back / first, 2, relative=0.02)
 
 
+class PadOnDisc(TestCase):
+    """Two bodies in space: what the piston presses, the disc feels."""
+
+    def test_forces(self):
+        result = run(
+            "brake_pad_disc_3d",
+            {
+                "Geometry/Arguments": "7, 4, 1 : -0.02, -0.01, -0.007 : 0.12, 0.06, 0"
+                " : true | 12, 6, 3 : 0, 0, 0 : 0.1, 0.05, 0.018 : true",
+                "Time/Phases": "0.1: 2, 1: 8",
+                "Output/Fields every": 0,
+            },
+        )
+        self.check_identities(result, COUPLED)
+        self.assertClose(result["contact_force_z"][2:], -1e4, relative=1e-6)
+        # all of it slides, nearly along x
+        self.assertEqual(result["stick_area"][-1], 0)
+        self.assertClose(result["friction_force_x"][-1], -4e3, relative=5e-3)
+        self.assertClose(result["reaction_4_x"][-1], 4e3, relative=5e-3)
+        # the trailing edge has lifted off
+        self.assertClose(result["contact_area"][-1], 0.9 * 0.005, relative=0.06)
+
+
+class SealInHousing(TestCase):
+    """Three bodies of revolution."""
+
+    def test_seals(self):
+        result = run("seal_in_housing_2d", {"Output/Fields every": 0})
+        self.check_identities(result, COUPLED)
+        t, lip = result["t"], 2 * np.pi * 10 * 5
+        oil = 2 * np.interp(t, [1, 2], [0, 1])
+        self.assertTrue(np.all(-result["contact_force_20_x"][1:] / lip > oil[1:]))
+        # what the oil presses, the wall of the groove and friction hold
+        ring = np.pi * (14**2 - 10**2)
+        held = -result["reaction_23_y"] + result["friction_force_y"]
+        self.assertClose(held, oil * ring, absolute=1e-4 * ring)
+        slips = result["slip_area"] / (lip * 2.4)
+        self.assertLess(slips[t == 3][0], 0.1)
+        self.assertGreater(slips[-1], 0.25)
+
+
 if __name__ == "__main__":
     main()

@@ -225,6 +225,14 @@ SCENES = {
                 **phases("0.02: 2, 0.3: 3, 0.5: 6, 0.52: 2, 1.5: 8"),
             }
         ),
+        "demos/brake_pad_disc_3d": Scene(
+            {
+                "Geometry/Arguments": "7, 4, 1 : -0.02, -0.01, -0.007 : 0.12, 0.06, 0"
+                " : true | 6, 6, 3 : 0, 0, 0 : 0.1, 0.05, 0.018 : true",
+                **phases("0.1: 2, 1: 4"),
+            }
+        ),
+        "demos/seal_in_housing_2d": Scene({**phases("1: 2, 2: 2, 3: 2, 4: 4")}),
         "demos/lap_joint_2d": Scene({**refined(0), **phases("1: 1, 2: 2, 4: 4, 6: 4")}),
         "demos/rod_seal_2d": Scene(
             {

@@ -6,7 +6,6 @@
 #include <viscoplastic_contact/contact/contact_iteration.h>
 #include <viscoplastic_contact/contact/kink_search.h>
 
-#include <algorithm>
 #include <cmath>
 
 namespace Viscoplastic

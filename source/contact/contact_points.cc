@@ -180,15 +180,13 @@ namespace Viscoplastic
 
   namespace
   {
-    /**
-     * Minimize J over x = start + y, with y in the range of the symmetric @p
-     * flexibility, its response to forces: by duality, block by block over the
-     * points from @p begin to @p end, which may be obstacles. Exact at once for
-     * a single point; returns whether the sweeps have ended. They hardly move
-     * where points pull against each other along one direction: what they leave
-     * then is a start for minimize_at_node(), or for the next sweep over the
-     * face, and counts as an error of its certificate.
-     */
+    /// Minimize J over x = start + y, with y in the range of the symmetric @p
+    /// flexibility, its response to forces: by duality, block by block over the
+    /// points from @p begin to @p end, which may be obstacles. Exact at once
+    /// for a single point; returns whether the sweeps have ended. They hardly
+    /// move where points pull against each other along one direction: what they
+    /// leave then is a start for minimize_at_node(), or for the next sweep over
+    /// the face, and counts as an error of its certificate.
     bool
     relax_points(const ContactLayout &face,
                  const unsigned int   begin,
@@ -353,12 +351,10 @@ namespace Viscoplastic
 
   namespace
   {
-    /**
-     * What is missing between the residual and the force of an obstacle that
-     * gives way is shared between that force, at the price of a defect of
-     * complementarity, and the residual: as springs in series share a force,
-     * which is where the sum of both is least.
-     */
+    /// What is missing between the residual and the force of an obstacle that
+    /// gives way is shared between that force, at the price of a defect of
+    /// complementarity, and the residual: as springs in series share a force,
+    /// which is where the sum of both is least.
     void
     share_misfit(const ContactLayout             &face,
                  const Vector<double>            &residual,

@@ -2,8 +2,6 @@
 #include <viscoplastic_contact/contact/contact_iteration.h>
 #include <viscoplastic_contact/contact/contact_solver.h>
 
-#include <algorithm>
-#include <array>
 #include <exception>
 
 namespace Viscoplastic

@@ -4,7 +4,6 @@
 #include <viscoplastic_contact/contact/contact_points.h>
 #include <viscoplastic_contact/contact/coulomb_bounds.h>
 
-#include <algorithm>
 #include <cmath>
 #include <sstream>
 

@@ -8,9 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
 #include <tuple>
-#include <vector>
 
 namespace Viscoplastic
 {

@@ -4,10 +4,8 @@
 #include <viscoplastic_contact/contact/contact_points.h>
 #include <viscoplastic_contact/contact/kink_search.h>
 
-#include <algorithm>
 #include <cmath>
 #include <limits>
-#include <vector>
 
 namespace Viscoplastic
 {
@@ -214,10 +212,8 @@ namespace Viscoplastic
 
 
 
-    /**
-     * The step up to @p largest that minimizes J along the correction; 1 if
-     * that is as good up to inexact linear solves, 0 if there is no descent.
-     */
+    /// The step up to @p largest that minimizes J along the correction; 1 if
+    /// that is as good up to inexact linear solves, 0 if there is no descent.
     SearchResult
     line_search(const ContactSolve::SearchTerms &bulk,
                 const FaceAlongLine             &face,

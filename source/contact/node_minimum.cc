@@ -2,7 +2,6 @@
 #include <viscoplastic_contact/contact/node_minimum.h>
 
 #include <cmath>
-#include <vector>
 
 namespace Viscoplastic
 {

@@ -532,10 +532,7 @@ namespace Viscoplastic
 
 
 
-  template void
-  distribute_nodes(const FiniteElement<2> &, DoFHandler<2> &);
-  template void
-  distribute_nodes(const FiniteElement<3> &, DoFHandler<3> &);
   template class AdmissibleSpace<2>;
   template class AdmissibleSpace<3>;
+  VISCOPLASTIC_INSTANTIATE(distribute_nodes);
 } // namespace Viscoplastic

@@ -110,11 +110,9 @@ namespace Viscoplastic
 
 
 
-    /**
-     * What vertices of refined cells are that lie apart from the owned cells of
-     * this rank. A rank asks for a vertex by a cell and a number in it; the
-     * rank that owns the node has all cells around it. Collective.
-     */
+    /// What vertices of refined cells are that lie apart from the owned cells
+    /// of this rank. A rank asks for a vertex by a cell and a number in it; the
+    /// rank that owns the node has all cells around it. Collective.
     template <int dim>
     std::vector<Combination>
     ask_others(const std::vector<std::pair<CellId::binary_type, unsigned int>>

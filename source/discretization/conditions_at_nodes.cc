@@ -110,16 +110,5 @@ namespace Viscoplastic
 
 
 
-  template ConditionsAtNodes<2>
-  conditions_at_nodes(const DoFHandler<2> &,
-                      const Scene<2> &,
-                      const AffineConstraints<double> &,
-                      const std::map<types::boundary_id, MortarRows> &,
-                      const std::vector<Point<2>> &);
-  template ConditionsAtNodes<3>
-  conditions_at_nodes(const DoFHandler<3> &,
-                      const Scene<3> &,
-                      const AffineConstraints<double> &,
-                      const std::map<types::boundary_id, MortarRows> &,
-                      const std::vector<Point<3>> &);
+  VISCOPLASTIC_INSTANTIATE(conditions_at_nodes);
 } // namespace Viscoplastic

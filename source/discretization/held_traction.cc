@@ -138,13 +138,7 @@ namespace Viscoplastic
 
 
 
-#define INSTANTIATE(dim)                                                 \
-  template LinearAlgebra::distributed::Vector<double> boundary_weights(  \
-    const AdmissibleSpace<dim> &, const std::set<types::boundary_id> &); \
-  template class HeldTraction<dim>;
-
-  INSTANTIATE(2)
-  INSTANTIATE(3)
-
-#undef INSTANTIATE
+  template class HeldTraction<2>;
+  template class HeldTraction<3>;
+  VISCOPLASTIC_INSTANTIATE(boundary_weights);
 } // namespace Viscoplastic

@@ -380,12 +380,5 @@ namespace Viscoplastic
 
 
 
-  template MortarRows
-  mortar_interpolation(const DoFHandler<2> &,
-                       const AffineConstraints<double> &,
-                       const ContactPair<2> &);
-  template MortarRows
-  mortar_interpolation(const DoFHandler<3> &,
-                       const AffineConstraints<double> &,
-                       const ContactPair<3> &);
+  VISCOPLASTIC_INSTANTIATE(mortar_interpolation);
 } // namespace Viscoplastic

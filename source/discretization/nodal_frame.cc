@@ -82,10 +82,8 @@ namespace Viscoplastic
 
 
 
-    /**
-     * The friction point of a piece with normal @p nu at a node with the given
-     * frame; without tangents if the other conditions leave no slip.
-     */
+    /// The friction point of a piece with normal @p nu at a node with the given
+    /// frame; without tangents if the other conditions leave no slip.
     template <int dim>
     FrictionPlane<dim>
     make_plane(const NodalFrame<dim>   &frame,

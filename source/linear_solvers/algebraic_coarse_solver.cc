@@ -4,7 +4,6 @@
 #include <viscoplastic_contact/linear_solvers/algebraic_coarse_solver.h>
 
 #include <algorithm>
-#include <cmath>
 
 namespace Viscoplastic
 {

@@ -5,7 +5,6 @@
 #include <Epetra_Vector.h>
 
 #include <cmath>
-#include <utility>
 
 namespace Viscoplastic
 {

@@ -266,20 +266,5 @@ namespace Viscoplastic
 
 
 
-  template BlockRows<2>
-  galerkin_product(const BlockRows<2> &,
-                   const std::vector<Node> &,
-                   const std::vector<Node> &,
-                   const Interpolation &,
-                   const std::vector<Node> &,
-                   const std::vector<Node> &,
-                   const MPI_Comm);
-  template BlockRows<3>
-  galerkin_product(const BlockRows<3> &,
-                   const std::vector<Node> &,
-                   const std::vector<Node> &,
-                   const Interpolation &,
-                   const std::vector<Node> &,
-                   const std::vector<Node> &,
-                   const MPI_Comm);
+  VISCOPLASTIC_INSTANTIATE(galerkin_product);
 } // namespace Viscoplastic

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <deal.II/base/mpi.h>
-
 #include <viscoplastic_contact/base/linear_algebra.h>
 #include <viscoplastic_contact/linear_solvers/algebraic_multigrid.h>
 #include <viscoplastic_contact/linear_solvers/bulk_solver_factory.h>

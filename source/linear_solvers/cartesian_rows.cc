@@ -132,16 +132,5 @@ namespace Viscoplastic
 
 
 
-  template BlockRows<2>
-  cartesian_rows(const DistributedMatrix &,
-                 const std::vector<bool> &,
-                 const NodeHierarchy &,
-                 const std::vector<Node> &,
-                 const double);
-  template BlockRows<3>
-  cartesian_rows(const DistributedMatrix &,
-                 const std::vector<bool> &,
-                 const NodeHierarchy &,
-                 const std::vector<Node> &,
-                 const double);
+  VISCOPLASTIC_INSTANTIATE(cartesian_rows);
 } // namespace Viscoplastic

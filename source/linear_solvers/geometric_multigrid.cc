@@ -1,13 +1,9 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <deal.II/base/mpi.h>
-
 #include <viscoplastic_contact/linear_solvers/algebraic_coarse_solver.h>
 #include <viscoplastic_contact/linear_solvers/direct_coarse_solver.h>
 #include <viscoplastic_contact/linear_solvers/geometric_multigrid.h>
 #include <viscoplastic_contact/linear_solvers/level_interpolations.h>
-#include <viscoplastic_contact/linear_solvers/multigrid_level.h>
 
-#include <algorithm>
 #include <cmath>
 #include <set>
 

@@ -15,7 +15,6 @@
 #include <cmath>
 #include <limits>
 #include <sstream>
-#include <utility>
 
 namespace Viscoplastic
 {

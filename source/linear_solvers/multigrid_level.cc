@@ -2,7 +2,6 @@
 #include <viscoplastic_contact/linear_solvers/multigrid_level.h>
 
 #include <algorithm>
-#include <cmath>
 #include <numeric>
 
 namespace Viscoplastic

@@ -4,7 +4,6 @@
 
 #include <cholmod.h>
 
-#include <algorithm>
 
 namespace Viscoplastic
 {

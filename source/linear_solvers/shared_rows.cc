@@ -9,7 +9,6 @@
 #include <cstring>
 #include <tuple>
 #include <type_traits>
-#include <unordered_map>
 
 namespace Viscoplastic
 {

@@ -3,7 +3,6 @@
 
 #include <viscoplastic_contact/linear_solvers/solver_choice.h>
 
-#include <algorithm>
 #include <cmath>
 
 namespace Viscoplastic

@@ -3,6 +3,7 @@
 
 #include <viscoplastic_contact/base/expression.h>
 #include <viscoplastic_contact/base/messages.h>
+#include <viscoplastic_contact/base/types.h>
 #include <viscoplastic_contact/mesh/files/read_mesh_file.h>
 #include <viscoplastic_contact/mesh/mesh.h>
 #include <viscoplastic_contact/mesh/mesh_check.h>
@@ -210,15 +211,13 @@ namespace Viscoplastic
 
 
 
-    /**
-     * Where manifolds curve a mesh, let each hanging vertex stand in the middle
-     * of the edge or face of the coarser cell, now and after all refinements to
-     * come. A manifold puts it beside that edge or face, whose cell has
-     * straight edges: the cells of both sides would overlap or leave a gap, and
-     * what is continuous at nodes would not be so between them. Refinement
-     * itself starts from the places that manifolds give. Does nothing without
-     * manifolds. Collective.
-     */
+    /// Where manifolds curve a mesh, let each hanging vertex stand in the
+    /// middle of the edge or face of the coarser cell, now and after all
+    /// refinements to come. A manifold puts it beside that edge or face, whose
+    /// cell has straight edges: the cells of both sides would overlap or leave
+    /// a gap, and what is continuous at nodes would not be so between them.
+    /// Refinement itself starts from the places that manifolds give. Does
+    /// nothing without manifolds. Collective.
     template <int dim>
     void
     keep_hanging_vertices_on_coarser_cells(
@@ -264,10 +263,5 @@ namespace Viscoplastic
 
 
 
-  template void
-  make_mesh(const GeometryParameters &,
-            parallel::distributed::Triangulation<2> &);
-  template void
-  make_mesh(const GeometryParameters &,
-            parallel::distributed::Triangulation<3> &);
+  VISCOPLASTIC_INSTANTIATE(make_mesh);
 } // namespace Viscoplastic

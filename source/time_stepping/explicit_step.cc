@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <deal.II/base/mpi.h>
-
 #include <viscoplastic_contact/time_stepping/explicit_step.h>
 #include <viscoplastic_contact/time_stepping/step_control.h>
 
@@ -199,10 +197,7 @@ namespace Viscoplastic
 
 
 
-  template void
-  check_stability<2>(const Parameters &, const FlowRate &, const TimeStep &);
-  template void
-  check_stability<3>(const Parameters &, const FlowRate &, const TimeStep &);
   template class ExplicitStep<2>;
   template class ExplicitStep<3>;
+  VISCOPLASTIC_INSTANTIATE(check_stability);
 } // namespace Viscoplastic

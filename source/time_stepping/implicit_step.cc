@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <deal.II/base/mpi.h>
-
 #include <viscoplastic_contact/time_stepping/implicit_step.h>
 
-#include <algorithm>
 
 namespace Viscoplastic
 {

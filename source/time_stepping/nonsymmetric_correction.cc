@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <deal.II/base/mpi.h>
 #include <deal.II/lac/solver_gmres.h>
 
 #include <viscoplastic_contact/base/messages.h>
@@ -7,8 +6,6 @@
 #include <viscoplastic_contact/laws/backward_euler.h>
 #include <viscoplastic_contact/time_stepping/nonsymmetric_correction.h>
 
-#include <cmath>
-#include <limits>
 
 namespace Viscoplastic
 {
@@ -335,10 +332,7 @@ namespace Viscoplastic
 
 
 
-  template bool
-  have_symmetric_tangents<2>(const FlowLaws<2> &, const double);
-  template bool
-  have_symmetric_tangents<3>(const FlowLaws<3> &, const double);
   template class NonsymmetricCorrection<2>;
   template class NonsymmetricCorrection<3>;
+  VISCOPLASTIC_INSTANTIATE(have_symmetric_tangents);
 } // namespace Viscoplastic

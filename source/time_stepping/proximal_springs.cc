@@ -1,13 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <deal.II/base/mpi.h>
-#include <deal.II/base/utilities.h>
-
 #include <viscoplastic_contact/contact/kink_search.h>
 #include <viscoplastic_contact/time_stepping/proximal_springs.h>
 
-#include <algorithm>
-#include <cmath>
-#include <limits>
 #include <sstream>
 
 namespace Viscoplastic

@@ -1,13 +1,11 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <deal.II/base/exceptions.h>
-#include <deal.II/base/utilities.h>
 
 #include <viscoplastic_contact/base/spelling.h>
 #include <viscoplastic_contact/error/error_budget.h>
 #include <viscoplastic_contact/parameters/parameter_file.h>
 #include <viscoplastic_contact/time_stepping/step_control.h>
 
-#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <sstream>

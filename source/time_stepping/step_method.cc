@@ -1,9 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <deal.II/base/mpi.h>
-
 #include <viscoplastic_contact/time_stepping/step_method.h>
-
-#include <algorithm>
 
 namespace Viscoplastic
 {
@@ -115,8 +111,5 @@ namespace Viscoplastic
   StepSolution<3>::stay(const StepProblem<3> &,
                         const AdmissibleSpace<3> &,
                         const ContactFace<3> *);
-  template bool
-  data_are_unchanged(const Discretization<2> &, const StepProblem<2> &);
-  template bool
-  data_are_unchanged(const Discretization<3> &, const StepProblem<3> &);
+  VISCOPLASTIC_INSTANTIATE(data_are_unchanged);
 } // namespace Viscoplastic

@@ -88,8 +88,5 @@ namespace Viscoplastic
 
 
 
-  template std::unique_ptr<StepMethod<2>>
-  make_step_method(const Discretization<2> &, TimerOutput &);
-  template std::unique_ptr<StepMethod<3>>
-  make_step_method(const Discretization<3> &, TimerOutput &);
+  VISCOPLASTIC_INSTANTIATE(make_step_method);
 } // namespace Viscoplastic

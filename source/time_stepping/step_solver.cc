@@ -1,13 +1,9 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <deal.II/base/mpi.h>
 #include <deal.II/base/timer.h>
 
 #include <viscoplastic_contact/discretization/bulk_system.h>
 #include <viscoplastic_contact/time_stepping/step_solver.h>
 
-#include <algorithm>
-#include <cmath>
-#include <limits>
 #include <sstream>
 
 namespace Viscoplastic

@@ -1,12 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <viscoplastic_contact/base/heartbeat.h>
 #include <viscoplastic_contact/base/messages.h>
-#include <viscoplastic_contact/contact/contact_event.h>
 #include <viscoplastic_contact/time_stepping/time_stepper.h>
 
-#include <algorithm>
-#include <cmath>
-#include <limits>
 #include <new>
 
 namespace Viscoplastic

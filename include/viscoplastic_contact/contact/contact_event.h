@@ -7,17 +7,15 @@
 
 namespace Viscoplastic
 {
-  /**
-   * Whether something happens in a step whose time matters: slip begins where
-   * there was none, comes to cover the face, ends everywhere, or turns back
-   * somewhere (the slip of the step is against that of the step before, with
-   * no rest between); or contact that opens and closes begins, covers its face,
-   * or ends. Points that cannot slip or that slip without friction do
-   * not count.
-   *
-   * @p from_kink: slip may end in this step without being an event, since its
-   * beginning is a known kink of the data. Collective.
-   */
+  /// Whether something happens in a step whose time matters: slip begins where
+  /// there was none, comes to cover the face, ends everywhere, or turns back
+  /// somewhere (the slip of the step is against that of the step before, with
+  /// no rest between); or contact that opens and closes begins, covers its
+  /// face, or ends. Points that cannot slip or that slip without friction do
+  /// not count.
+  ///
+  /// @p from_kink: slip may end in this step without being an event, since its
+  /// beginning is a known kink of the data. Collective.
   bool
   has_contact_event(const ContactLayout &face,
                     const ContactState  &old_state,

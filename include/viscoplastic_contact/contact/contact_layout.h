@@ -14,18 +14,16 @@ namespace Viscoplastic
 {
   using namespace dealii;
 
-  /**
-   * The contact points of Gamma_3 without finite elements: which unknowns of
-   * the face they see, and how. Points of friction resist slip; an obstacle is
-   * what keeps a node out of the foundation in unilateral contact, at once or,
-   * with normal compliance, by a force that grows with penetration. Each rank
-   * has the nodes that it owns, so that the part of a rank is small where there
-   * are many of them.
-   *
-   * A face vector holds, node by node, the displacement components that some
-   * point at the node sees (1 to 3). Blocks of a node are padded to
-   * size 3.
-   */
+  /// The contact points of Gamma_3 without finite elements: which unknowns of
+  /// the face they see, and how. Points of friction resist slip; an obstacle is
+  /// what keeps a node out of the foundation in unilateral contact, at once or,
+  /// with normal compliance, by a force that grows with penetration. Each rank
+  /// has the nodes that it owns, so that the part of a rank is small where
+  /// there are many of them.
+  ///
+  /// A face vector holds, node by node, the displacement components that some
+  /// point at the node sees (1 to 3). Blocks of a node are padded to
+  /// size 3.
   struct ContactLayout
   {
     struct Point
@@ -162,15 +160,13 @@ namespace Viscoplastic
               const std::vector<Tensor<1, 2>> &slips);
 
 
-  /**
-   * What contact does in a step, point by point. Friction, with the slip s_c =
-   * B_c (u - u_prev) - w_c against the foundation of the point, satisfies
-   *
-   *     |lambda_c| <= rho_c,   lambda_c = rho_c s_c/|s_c| where s_c != 0,
-   *
-   * and an obstacle s_c <= d_c, lambda_c >= 0, lambda_c (d_c - s_c) = 0, or,
-   * where it gives way, lambda_c = p(s_c - d_c).
-   */
+  /// What contact does in a step, point by point. Friction, with the slip s_c =
+  /// B_c (u - u_prev) - w_c against the foundation of the point, satisfies
+  ///
+  ///     |lambda_c| <= rho_c,   lambda_c = rho_c s_c/|s_c| where s_c != 0,
+  ///
+  /// and an obstacle s_c <= d_c, lambda_c >= 0, lambda_c (d_c - s_c) = 0, or,
+  /// where it gives way, lambda_c = p(s_c - d_c).
   struct ContactState
   {
     /// The bound rho_c >= 0; infinite for glued points. Of an obstacle the
@@ -221,12 +217,10 @@ namespace Viscoplastic
   };
 
 
-  /**
-   * How the truncated system treats the face: at each node the projector onto
-   * the directions that no sticking point blocks, and the stiffness against
-   * turning the slip direction of slipping points (zero for one tangent) and
-   * against going on into obstacles that give way.
-   */
+  /// How the truncated system treats the face: at each node the projector onto
+  /// the directions that no sticking point blocks, and the stiffness against
+  /// turning the slip direction of slipping points (zero for one tangent) and
+  /// against going on into obstacles that give way.
   struct FaceTruncation
   {
     std::vector<Tensor<2, 3>> projector, spring;

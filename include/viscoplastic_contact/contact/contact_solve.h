@@ -23,17 +23,16 @@ namespace Viscoplastic
   };
 
 
-  /**
-   * One solve for a displacement u under way, as solvers of contact see it: the
-   * energy 1/2 a(u,u) - l(u) with everything but contact. It owns what it needs
-   * of l and u; BulkSolver::begin() makes it.
-   *
-   * A contact solver moves the displacement by the calls below and sees only
-   * its values on the face, so it needs neither a mesh nor distributed vectors.
-   *
-   * All calls are collective. Face vectors are of the nodes of this rank, all
-   * other results the same on all ranks.
-   */
+  /// One solve for a displacement u under way, as solvers of contact see it:
+  /// the energy 1/2 a(u,u) - l(u) with everything but contact. It owns what it
+  /// needs of l and u; BulkSolver::begin() makes it.
+  ///
+  /// A contact solver moves the displacement by the calls below and sees only
+  /// its values on the face, so it needs neither a mesh nor distributed
+  /// vectors.
+  ///
+  /// All calls are collective. Face vectors are of the nodes of this rank, all
+  /// other results the same on all ranks.
   class ContactSolve
   {
   public:
@@ -74,11 +73,9 @@ namespace Viscoplastic
     set_truncation(const FaceTruncation &truncation,
                    const bool            may_rebuild = true) = 0;
 
-    /**
-     * The norm of l - A u - force in the dual of the energy norm; @p force is a
-     * face vector. This bounds the algebraic error. Exact for direct solvers,
-     * an estimate by the preconditioner otherwise.
-     */
+    /// The norm of l - A u - force in the dual of the energy norm; @p force is
+    /// a face vector. This bounds the algebraic error. Exact for direct
+    /// solvers, an estimate by the preconditioner otherwise.
     virtual double
     dual_norm(const Vector<double> &force) = 0;
 
@@ -93,13 +90,11 @@ namespace Viscoplastic
       return dual_norm(force);
     }
 
-    /**
-     * What dual_norm() makes of l - A u if each of its rows is off by a unit of
-     * rounding of its terms, this way or that by chance. Flat cells, stiffness
-     * that differs and bodies next to incompressible make much of it. No solver
-     * can do better, nor are the entries of A any better known. As dear as some
-     * solves.
-     */
+    /// What dual_norm() makes of l - A u if each of its rows is off by a unit
+    /// of rounding of its terms, this way or that by chance. Flat cells,
+    /// stiffness that differs and bodies next to incompressible make much of
+    /// it. No solver can do better, nor are the entries of A any better known.
+    /// As dear as some solves.
     virtual double
     rounding_of_residual() = 0;
 
@@ -115,12 +110,10 @@ namespace Viscoplastic
       return std::max(energy_norm(), scale.former_size);
     }
 
-    /**
-     * Solve (tilt A + springs) w = tilt (l - A u - force) on the truncated
-     * space to the relative accuracy @p tolerance; returns the face part in @p
-     * w and the number of linear iterations. Of a transposed truncation, w =
-     * tilt^T v with (A tilt^T + springs) v = l - A u - force.
-     */
+    /// Solve (tilt A + springs) w = tilt (l - A u - force) on the truncated
+    /// space to the relative accuracy @p tolerance; returns the face part in @p
+    /// w and the number of linear iterations. Of a transposed truncation, w =
+    /// tilt^T v with (A tilt^T + springs) v = l - A u - force.
     virtual unsigned int
     correct(const Vector<double> &force,
             const double          tolerance,
@@ -162,17 +155,15 @@ namespace Viscoplastic
   };
 
 
-  /**
-   * Solve (A + springs) u = l - force with the sets of a @p truncation, from
-   * where @p solve is, and finish it. Corrections are solved to the relative
-   * accuracy @p reduction, which is one of the start: where that is larger in
-   * the energy norm than @p enough solutions, a correction is corrected in its
-   * turn, a few times at most, and nobody has measured what is left then: for
-   * preconditioners, and for what is solved for again or whose residual counts
-   * as an error. A truncation that is not to be kept leaves
-   * preconditioners as they are (see ContactSolve::set_truncation()). Returns
-   * the linear iterations of the corrections.
-   */
+  /// Solve (A + springs) u = l - force with the sets of a @p truncation, from
+  /// where @p solve is, and finish it. Corrections are solved to the relative
+  /// accuracy @p reduction, which is one of the start: where that is larger in
+  /// the energy norm than @p enough solutions, a correction is corrected in its
+  /// turn, a few times at most, and nobody has measured what is left then: for
+  /// preconditioners, and for what is solved for again or whose residual counts
+  /// as an error. A truncation that is not to be kept leaves
+  /// preconditioners as they are (see ContactSolve::set_truncation()). Returns
+  /// the linear iterations of the corrections.
   unsigned int
   solve_truncated(ContactSolve         &solve,
                   const ContactLayout  &face,

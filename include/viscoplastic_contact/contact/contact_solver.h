@@ -8,64 +8,60 @@
 
 namespace Viscoplastic
 {
-  /**
-   * Minimizes the energy of one step,
-   *
-   *     J(u) = 1/2 a(u,u) - l(u) + sum_c rho_c |s_c|,   s_c = B_c (u - u_prev)
-   * - w_c,
-   *
-   * where s_c <= d_c at obstacles (unilateral contact, Signorini's conditions),
-   * by a primal-dual active set iteration that cannot cycle: (1) nonlinear
-   * Gauss-Seidel over the face nodes, which minimizes J node by node, decides
-   * who sticks and in which direction who slips; (2) a linear solve on the
-   * truncated space with the tangent stiffness of turning slip is a semismooth
-   * Newton step; (3) increments that would reverse a slip stop at stick, those
-   * that would enter an obstacle stop there, and a line search minimizes J
-   * along the rest. Where that is no descent, the reversing points are brought
-   * to rest first, or the correction is taken as it is, which always descends.
-   * J never increases, so no set comes twice (compare Kornhuber's monotone
-   * multigrid and TNNMG by Graeser and Sander, where (1) covers all unknowns;
-   * here the linear solve covers the bulk).
-   *
-   * The iteration stops when the duality gap bounds the error: with
-   * multipliers in their balls, pressures p >= 0, the remaining residual R and
-   * the defect eps = sum rho |s| - lambda . s + sum p (d - s) of
-   * complementarity, gap = 1/2 |R|^2 + eps in
-   * the dual energy norm and |error| <= (|R| + sqrt(|R|^2 + 4 eps))/2. The
-   * multipliers satisfy the laws of contact exactly (eps = 0), except at points
-   * that have hardly begun to slip.
-   *
-   * With Coulomb's law of the step's own pressure there is no J. Each of the
-   * phases is that of given bounds all the same: (1) nodes obey the law itself,
-   * (2) the linear system knows that bounds change with pressures (CoulombLaw),
-   * and (3) J is that of the bounds which (2) has predicted, for which its
-   * correction is a Newton step. So the iteration converges as fast as with
-   * given bounds, but nothing says that it must: where its error does not fall,
-   * bounds rest for a while and follow at a distance (CoulombBounds). What
-   * stops it is in error_with_bounds().
-   */
+  /// Minimizes the energy of one step,
+  ///
+  ///     J(u) = 1/2 a(u,u) - l(u) + sum_c rho_c |s_c|,   s_c = B_c (u - u_prev)
+  /// - w_c,
+  ///
+  /// where s_c <= d_c at obstacles (unilateral contact, Signorini's
+  /// conditions), by a primal-dual active set iteration that cannot cycle: (1)
+  /// nonlinear Gauss-Seidel over the face nodes, which minimizes J node by
+  /// node, decides who sticks and in which direction who slips; (2) a linear
+  /// solve on the truncated space with the tangent stiffness of turning slip is
+  /// a semismooth Newton step; (3) increments that would reverse a slip stop at
+  /// stick, those that would enter an obstacle stop there, and a line search
+  /// minimizes J along the rest. Where that is no descent, the reversing points
+  /// are brought to rest first, or the correction is taken as it is, which
+  /// always descends. J never increases, so no set comes twice (compare
+  /// Kornhuber's monotone multigrid and TNNMG by Graeser and Sander, where (1)
+  /// covers all unknowns; here the linear solve covers the bulk).
+  ///
+  /// The iteration stops when the duality gap bounds the error: with
+  /// multipliers in their balls, pressures p >= 0, the remaining residual R and
+  /// the defect eps = sum rho |s| - lambda . s + sum p (d - s) of
+  /// complementarity, gap = 1/2 |R|^2 + eps in
+  /// the dual energy norm and |error| <= (|R| + sqrt(|R|^2 + 4 eps))/2. The
+  /// multipliers satisfy the laws of contact exactly (eps = 0), except at
+  /// points that have hardly begun to slip.
+  ///
+  /// With Coulomb's law of the step's own pressure there is no J. Each of the
+  /// phases is that of given bounds all the same: (1) nodes obey the law
+  /// itself, (2) the linear system knows that bounds change with pressures
+  /// (CoulombLaw), and (3) J is that of the bounds which (2) has predicted, for
+  /// which its correction is a Newton step. So the iteration converges as fast
+  /// as with given bounds, but nothing says that it must: where its error does
+  /// not fall, bounds rest for a while and follow at a distance
+  /// (CoulombBounds). What stops it is in error_with_bounds().
   class ContactSolver
   {
   public:
     explicit ContactSolver(const unsigned int max_iterations);
 
-    /**
-     * @p increment: face part of u - u_prev at the start given to
-     * BulkSolver::begin(), and of the solution on return; @p state: the bounds,
-     * and the sets and multipliers to start from, which become those of the
-     * solution; @p tolerance: the relative error at which to stop.
-     *
-     * The report tells what a solve without contact would have taken from the
-     * same start, from what this one has shown: of an exact solver, the
-     * completion of the displacement, to which the caller adds its beginning;
-     * of an iterative one the seconds a decade of its corrections, times the
-     * decades from the first error to the tolerance. Nothing is solved for it.
-     *
-     * With a @p law, bounds are those of the pressures that come out.
-     *
-     * Collective. Throws ExcMessage when the iteration is exhausted or a value
-     * is not finite: there is no unconverged result.
-     */
+    /// @p increment: face part of u - u_prev at the start given to
+    /// BulkSolver::begin(), and of the solution on return; @p state: the
+    /// bounds, and the sets and multipliers to start from, which become those
+    /// of the solution; @p tolerance: the relative error at which to stop.
+    ///
+    /// The report tells what a solve without contact would have taken from the
+    /// same start, from what this one has shown: of an exact solver, the
+    /// completion of the displacement, to which the caller adds its beginning;
+    /// of an iterative one the seconds a decade of its corrections, times the
+    /// decades from the first error to the tolerance. Nothing is solved for it.
+    ///
+    /// With a @p law, bounds are those of the pressures that come out.
+    ///
+    /// Collective. Throws ExcMessage when the iteration is exhausted or a value
+    /// is not finite: there is no unconverged result.
     ContactReport
     solve(ContactSolve        &bulk,
           const ContactLayout &face,

@@ -10,15 +10,13 @@
 
 namespace Viscoplastic
 {
-  /**
-   * The bounds of Coulomb's law in the iterations of a contact solver. As a
-   * rule they follow the pressures at once: nodes are solved with the law
-   * itself, and the linear system knows that bounds change with pressures. That
-   * is a Newton method, which need not converge. Where the error does not fall,
-   * bounds rest until the step is solved for them, and are moved towards those
-   * of the pressures by the share that two such moves tell (Aitken), until they
-   * are near enough to follow again. All calls are collective.
-   */
+  /// The bounds of Coulomb's law in the iterations of a contact solver. As a
+  /// rule they follow the pressures at once: nodes are solved with the law
+  /// itself, and the linear system knows that bounds change with pressures.
+  /// That is a Newton method, which need not converge. Where the error does not
+  /// fall, bounds rest until the step is solved for them, and are moved towards
+  /// those of the pressures by the share that two such moves tell (Aitken),
+  /// until they are near enough to follow again. All calls are collective.
   class CoulombBounds
   {
   public:
@@ -87,14 +85,13 @@ namespace Viscoplastic
       return loss >= 0.5 || largest_coefficient >= 1.;
     }
 
-    /**
-     * The error of a step whose error for the present bounds is at most @p
-     * error. The forces of the solution for these differ from those here by at
-     * most twice as much in the dual norm; bounds follow with the coefficient
-     * of friction, and what bounds at rest miss comes on top. (That forces
-     * along and across the foundation weigh alike in this norm, and that bounds
-     * do not follow further, is true up to a factor for a small coefficient.)
-     */
+    /// The error of a step whose error for the present bounds is at most @p
+    /// error. The forces of the solution for these differ from those here by at
+    /// most twice as much in the dual norm; bounds follow with the coefficient
+    /// of friction, and what bounds at rest miss comes on top. (That forces
+    /// along and across the foundation weigh alike in this norm, and that
+    /// bounds do not follow further, is true up to a factor for a small
+    /// coefficient.)
     double
     error_with_bounds(const double error) const
     {

@@ -7,12 +7,10 @@
 
 namespace Viscoplastic
 {
-  /**
-   * Of bounds of friction that follow from the pressures p_k >= 0 of the
-   * obstacles of the same node:
-   *
-   *     rho_c = g_c + sum_k mu_ck p_k
-   */
+  /// Of bounds of friction that follow from the pressures p_k >= 0 of the
+  /// obstacles of the same node:
+  ///
+  ///     rho_c = g_c + sum_k mu_ck p_k
   struct CoulombCoefficients
   {
     /// g_c, point by point; of no meaning for obstacles.

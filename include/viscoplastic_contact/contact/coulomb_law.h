@@ -11,12 +11,10 @@
 
 namespace Viscoplastic
 {
-  /**
-   * Coulomb's law with the pressure of the step itself. What is here makes a
-   * solver of given bounds one of this law: a Gauss-Seidel step at a node, and
-   * how the linear system of a Newton step knows that bounds change with the
-   * pressure.
-   */
+  /// Coulomb's law with the pressure of the step itself. What is here makes a
+  /// solver of given bounds one of this law: a Gauss-Seidel step at a node, and
+  /// how the linear system of a Newton step knows that bounds change with the
+  /// pressure.
   struct CoulombLaw : CoulombCoefficients
   {
     /// Where a node is, for messages.
@@ -34,14 +32,12 @@ namespace Viscoplastic
                ContactState        &state,
                bool                 must_settle) const;
 
-    /**
-     * A slipping point has lambda = g d + mu p d, d = s/|s|, with the pressure
-     * p = c . r of the same equation: of the residual r of its node, what
-     * r - mu (c . r) d leaves is zero in the directions that are free (c is the
-     * unit normal; where pieces meet, NodeForces has it). Adds the matrices
-     * I - mu d c^T of such nodes to @p truncation, which make_truncation() has
-     * made of the other arguments.
-     */
+    /// A slipping point has lambda = g d + mu p d, d = s/|s|, with the pressure
+    /// p = c . r of the same equation: of the residual r of its node, what
+    /// r - mu (c . r) d leaves is zero in the directions that are free (c is
+    /// the unit normal; where pieces meet, NodeForces has it). Adds the
+    /// matrices I - mu d c^T of such nodes to @p truncation, which
+    /// make_truncation() has made of the other arguments.
     void
     tilt(const ContactLayout             &face,
          const ContactState              &state,

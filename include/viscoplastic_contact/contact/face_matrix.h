@@ -7,14 +7,12 @@
 
 namespace Viscoplastic
 {
-  /**
-   * The symmetric positive definite matrix by which the face reacts to changes
-   * of single nodes: what nonlinear Gauss-Seidel sweeps over Gamma_3 need.
-   *
-   * A sweep goes through the nodes stage by stage. Nodes of one stage that
-   * belong to different ranks do not couple, so that all ranks together do what
-   * one would do alone, node after node.
-   */
+  /// The symmetric positive definite matrix by which the face reacts to changes
+  /// of single nodes: what nonlinear Gauss-Seidel sweeps over Gamma_3 need.
+  ///
+  /// A sweep goes through the nodes stage by stage. Nodes of one stage that
+  /// belong to different ranks do not couple, so that all ranks together do
+  /// what one would do alone, node after node.
   class FaceMatrix
   {
   public:

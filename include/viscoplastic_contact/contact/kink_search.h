@@ -20,11 +20,9 @@ namespace Viscoplastic
   };
 
 
-  /**
-   * The step that minimizes J along the correction @p w, of at most 2 and of
-   * what no obstacle ends; 1 if that is as good up to inexact linear solves, 0
-   * if there is no descent.
-   */
+  /// The step that minimizes J along the correction @p w, of at most 2 and of
+  /// what no obstacle ends; 1 if that is as good up to inexact linear solves, 0
+  /// if there is no descent.
   SearchResult
   search_along(ContactSolve         &bulk,
                const ContactLayout  &face,
@@ -32,12 +30,10 @@ namespace Viscoplastic
                const Vector<double> &w);
 
 
-  /**
-   * How many times the change @p w of the face, after which its state is
-   * @p state, can be repeated until J has its minimum along it, or an obstacle
-   * that is not touched yet ends it. @p terms: the descent of J after the
-   * change and the curvature of the energy of the body.
-   */
+  /// How many times the change @p w of the face, after which its state is
+  /// @p state, can be repeated until J has its minimum along it, or an obstacle
+  /// that is not touched yet ends it. @p terms: the descent of J after the
+  /// change and the curvature of the energy of the body.
   double
   repetitions(const ContactSolve::SearchTerms &terms,
               const ContactLayout             &face,
@@ -75,14 +71,12 @@ namespace Viscoplastic
     unsigned int   linear_iterations;
   };
 
-  /**
-   * Bring the nodes that the correction @p w takes beyond a kink of J there,
-   * solve with them held to the relative accuracy @p tolerance (or what the
-   * stop asks for), and search along that correction. If J is lower
-   * then, the stop is made (@p x and @p state change) and the step is
-   * returned, to be taken; otherwise everything is as before but the
-   * correction.
-   */
+  /// Bring the nodes that the correction @p w takes beyond a kink of J there,
+  /// solve with them held to the relative accuracy @p tolerance (or what the
+  /// stop asks for), and search along that correction. If J is lower
+  /// then, the stop is made (@p x and @p state change) and the step is
+  /// returned, to be taken; otherwise everything is as before but the
+  /// correction.
   std::optional<KinkStep>
   step_from_kinks(ContactSolve                    &bulk,
                   const ContactLayout             &face,
@@ -94,13 +88,11 @@ namespace Viscoplastic
                   ContactState                    &state);
 
 
-  /**
-   * The correction with @p truncation, and the search along it. Where an
-   * obstacle that a node does not touch ends it before the part @p least, such
-   * nodes are held at the distance that they have, and the solve is repeated
-   * until nothing else is in the way or J gets no lower. @p force: what is to
-   * be corrected.
-   */
+  /// The correction with @p truncation, and the search along it. Where an
+  /// obstacle that a node does not touch ends it before the part @p least, such
+  /// nodes are held at the distance that they have, and the solve is repeated
+  /// until nothing else is in the way or J gets no lower. @p force: what is to
+  /// be corrected.
   KinkStep
   step_past_obstacles(ContactSolve                    &bulk,
                       const ContactLayout             &face,

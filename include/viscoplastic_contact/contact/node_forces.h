@@ -8,16 +8,14 @@
 
 namespace Viscoplastic
 {
-  /**
-   * The forces of the points at a node where pieces meet. What holds the node
-   * makes up for a force as far as the laws of its points allow: pressures
-   * p >= 0, friction in the ball |lambda| <= rho, or with Coulomb's law in the
-   * cone |lambda| <= g + sum mu p, where the other piece may hold what this one
-   * presses. A point that slips adds mu s/|s| to the force of a unit of
-   * pressure. All of these sets are convex, so there is a best fit; where it
-   * leaves a choice, as at a corner that sticks, that of least norm is taken,
-   * or where the node can move, that whose pressures hold what they can.
-   */
+  /// The forces of the points at a node where pieces meet. What holds the node
+  /// makes up for a force as far as the laws of its points allow: pressures
+  /// p >= 0, friction in the ball |lambda| <= rho, or with Coulomb's law in the
+  /// cone |lambda| <= g + sum mu p, where the other piece may hold what this
+  /// one presses. A point that slips adds mu s/|s| to the force of a unit of
+  /// pressure. All of these sets are convex, so there is a best fit; where it
+  /// leaves a choice, as at a corner that sticks, that of least norm is taken,
+  /// or where the node can move, that whose pressures hold what they can.
   class NodeForces
   {
   public:

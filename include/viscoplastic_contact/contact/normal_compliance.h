@@ -5,11 +5,9 @@
 
 namespace Viscoplastic
 {
-  /**
-   * Normal compliance at a node (Oden and Martins, Comput. Methods Appl. Mech.
-   * Eng. 52, 1985): the force p(w), the sum of k w_+^m over the pieces that
-   * meet there, at the penetration w = u_n - g.
-   */
+  /// Normal compliance at a node (Oden and Martins, Comput. Methods Appl. Mech.
+  /// Eng. 52, 1985): the force p(w), the sum of k w_+^m over the pieces that
+  /// meet there, at the penetration w = u_n - g.
   class NormalCompliance
   {
   public:
@@ -44,11 +42,9 @@ namespace Viscoplastic
     double
     penetration(const double flexibility, const double free_w) const;
 
-    /**
-     * A bound on energy(w) + its conjugate at @p p - p w >= 0, which is zero
-     * for p = force(w): what it costs to take another force p >= 0 for the one
-     * at w > 0. (The integral of p(x) - p from where p is the force to w.)
-     */
+    /// A bound on energy(w) + its conjugate at @p p - p w >= 0, which is zero
+    /// for p = force(w): what it costs to take another force p >= 0 for the one
+    /// at w > 0. (The integral of p(x) - p from where p is the force to w.)
     double
     defect(const double w, const double p) const;
 

@@ -8,13 +8,12 @@
 
 namespace Viscoplastic
 {
-  /**
-   * A face matrix in compressed rows: couplings of face unknowns at fixed bulk.
-   *
-   * The first stage of its sweeps are the nodes that couple with none of
-   * another rank. The others follow rank by rank, where ranks that do not
-   * couple with each other take the same stage.
-   */
+  /// A face matrix in compressed rows: couplings of face unknowns at fixed
+  /// bulk.
+  ///
+  /// The first stage of its sweeps are the nodes that couple with none of
+  /// another rank. The others follow rank by rank, where ranks that do not
+  /// couple with each other take the same stage.
   class SparseFaceMatrix : public FaceMatrix
   {
   public:

@@ -7,10 +7,8 @@
 
 namespace Viscoplastic
 {
-  /**
-   * A body that only contact holds, as statics sees it: the rigid motions that
-   * are left to it, and the work of the loads on them.
-   */
+  /// A body that only contact holds, as statics sees it: the rigid motions that
+  /// are left to it, and the work of the loads on them.
   struct HeldBody
   {
     const ContactLayout &face;
@@ -37,40 +35,36 @@ namespace Viscoplastic
   };
 
 
-  /**
-   * Whether there are pressures p_c >= 0 and forces of friction within their
-   * bounds, rho_c or rho_c + mu_c p_c, that do as much work as the loads on
-   * each rigid motion. By the lemma of Farkas there is otherwise a motion v
-   * that proves the contrary:
-   *
-   *     n_c . v <= 0 (or n_c . v + mu_c |v_c| <= 0) at all obstacles,
-   *     l(v) > sum_c rho_c |v_c|.
-   *
-   * Least squares with nonnegative coefficients (Lawson, Hanson) in as many
-   * dimensions as there are rigid motions decide; of the infinitely many forces
-   * of a cone of friction the one that helps most is taken into account each
-   * time. Loads that lie on the edge of what can be balanced, up to rounding,
-   * are balanced. Collective.
-   *
-   * @p bounds: of friction at each point, infinite where nothing can slip; what
-   * is said of obstacles does not count. @p bounds_of_pressure: what a unit of
-   * pressure at the first, second, ... obstacle of a node adds to the bound of
-   * each point of friction there; empty where bounds are given.
-   */
+  /// Whether there are pressures p_c >= 0 and forces of friction within their
+  /// bounds, rho_c or rho_c + mu_c p_c, that do as much work as the loads on
+  /// each rigid motion. By the lemma of Farkas there is otherwise a motion v
+  /// that proves the contrary:
+  ///
+  ///     n_c . v <= 0 (or n_c . v + mu_c |v_c| <= 0) at all obstacles,
+  ///     l(v) > sum_c rho_c |v_c|.
+  ///
+  /// Least squares with nonnegative coefficients (Lawson, Hanson) in as many
+  /// dimensions as there are rigid motions decide; of the infinitely many
+  /// forces of a cone of friction the one that helps most is taken into account
+  /// each time. Loads that lie on the edge of what can be balanced, up to
+  /// rounding, are balanced. Collective.
+  ///
+  /// @p bounds: of friction at each point, infinite where nothing can slip;
+  /// what is said of obstacles does not count. @p bounds_of_pressure: what a
+  /// unit of pressure at the first, second, ... obstacle of a node adds to the
+  /// bound of each point of friction there; empty where bounds are given.
   Statics
   balance(const HeldBody                         &body,
           const std::vector<double>              &bounds,
           const std::vector<std::vector<double>> &bounds_of_pressure);
 
 
-  /**
-   * The rigid motion, in the basis of the body, by which a body in the state
-   * @p contact, with the present @p slips of its points, comes to where its
-   * loads and contact are in balance: by Newton's method for what neither
-   * sticking points nor rigid obstacles prevent, and no further than to the
-   * next rigid obstacle. Only foundations that give way resist it, and friction
-   * of points that slip. Collective.
-   */
+  /// The rigid motion, in the basis of the body, by which a body in the state
+  /// @p contact, with the present @p slips of its points, comes to where its
+  /// loads and contact are in balance: by Newton's method for what neither
+  /// sticking points nor rigid obstacles prevent, and no further than to the
+  /// next rigid obstacle. Only foundations that give way resist it, and
+  /// friction of points that slip. Collective.
   std::vector<double>
   settle(const HeldBody                  &body,
          const ContactState              &contact,

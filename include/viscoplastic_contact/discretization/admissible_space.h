@@ -19,46 +19,40 @@
 
 namespace Viscoplastic
 {
-  /**
-   * Distribute the degrees of freedom of the element FE_Q(1)^dim, numbered on
-   * each rank in the order of owned_cells(). Collective.
-   */
+  /// Distribute the degrees of freedom of the element FE_Q(1)^dim, numbered on
+  /// each rank in the order of owned_cells(). Collective.
   template <int dim>
   void
   distribute_nodes(const FiniteElement<dim> &fe, DoFHandler<dim> &dof_handler);
 
 
-  /**
-   * The space V_h of admissible displacements, the paper's U^h, and its
-   * translates: continuous, FE_Q(1) in each component, with hanging nodes,
-   * prescribed components in nodal frames of any orientation, and their values
-   * at time t. Displacement vectors come in two forms:
-   *
-   * - Cartesian: for evaluation and output;
-   * - in frames: each independent node in the components of its NodalFrame,
-   *   hanging nodes Cartesian. Matrices and load vectors are assembled in this
-   *   form, in which every prescribed component is one degree of freedom.
-   *
-   * Where two bodies touch, the second form has the jump w = u - Q u of the
-   * displacement across the interface in place of u at the nodes p of the
-   * secondary side, Q being mortar_interpolation(): the change of variables
-   * u_p = w_p + C_p sum_q Q_pq u_q (Wohlmuth and Krause, SIAM J. Sci. Comput.
-   * 25, 2003), in which two bodies are one on a rigid foundation. C_p leaves
-   * out what other conditions prescribe at the node.
-   *
-   * Built anew on every mesh, on degrees of freedom from distribute_nodes():
-   * the dim ones of a node are consecutive, so nodes are addressed by their
-   * first.
-   */
+  /// The space V_h of admissible displacements, the paper's U^h, and its
+  /// translates: continuous, FE_Q(1) in each component, with hanging nodes,
+  /// prescribed components in nodal frames of any orientation, and their values
+  /// at time t. Displacement vectors come in two forms:
+  ///
+  /// - Cartesian: for evaluation and output;
+  /// - in frames: each independent node in the components of its NodalFrame,
+  ///   hanging nodes Cartesian. Matrices and load vectors are assembled in this
+  ///   form, in which every prescribed component is one degree of freedom.
+  ///
+  /// Where two bodies touch, the second form has the jump w = u - Q u of the
+  /// displacement across the interface in place of u at the nodes p of the
+  /// secondary side, Q being mortar_interpolation(): the change of variables
+  /// u_p = w_p + C_p sum_q Q_pq u_q (Wohlmuth and Krause, SIAM J. Sci. Comput.
+  /// 25, 2003), in which two bodies are one on a rigid foundation. C_p leaves
+  /// out what other conditions prescribe at the node.
+  ///
+  /// Built anew on every mesh, on degrees of freedom from distribute_nodes():
+  /// the dim ones of a node are consecutive, so nodes are addressed by their
+  /// first.
   template <int dim>
   class AdmissibleSpace
   {
   public:
-    /**
-     * Collective. Throws ExcMessage when the conditions leave a rigid motion
-     * free, naming it, unless there is unilateral contact, which may prevent
-     * it.
-     */
+    /// Collective. Throws ExcMessage when the conditions leave a rigid motion
+    /// free, naming it, unless there is unilateral contact, which may prevent
+    /// it.
     AdmissibleSpace(const DoFHandler<dim> &dof_handler,
                     const Scene<dim>      &scene);
 
@@ -155,11 +149,9 @@ namespace Viscoplastic
     DistributedVector
     ghosted_vector() const;
 
-    /**
-     * Add @p cartesian, sums over the owned cells in the order of `relevant`,
-     * to a load vector in frames: hanging nodes pass their share on.
-     * Changes @p cartesian; collective.
-     */
+    /// Add @p cartesian, sums over the owned cells in the order of `relevant`,
+    /// to a load vector in frames: hanging nodes pass their share on.
+    /// Changes @p cartesian; collective.
     void
     add_cartesian_load(std::vector<double> &cartesian,
                        DistributedVector   &load) const;
@@ -282,10 +274,8 @@ namespace Viscoplastic
             frames[frame_of_node[n / dim]].directions);
     }
 
-    /**
-     * The rigid body modes (3 or 6) in frames on owned entries, zero where
-     * excluded; each relative to the center of the body.
-     */
+    /// The rigid body modes (3 or 6) in frames on owned entries, zero where
+    /// excluded; each relative to the center of the body.
     std::vector<DistributedVector>
     rigid_body_modes() const;
 

@@ -23,17 +23,15 @@ namespace Viscoplastic
     bool is_axial = false;
   };
 
-  /**
-   * The violation of compatibility (2.12),
-   *
-   *     (sigma0, eps(v)) + j(v) >= L(0, v)  for all v,
-   *
-   * relative to the loads: the norm of the residual off Gamma_3 and of its
-   * excess over the friction ball on Gamma_3. Evaluated with sigma0 itself by
-   * quadrature: its projection would violate equilibrium by O(h). Also gives
-   * the multipliers at t = 0. @p face is null without contact points.
-   * Collective.
-   */
+  /// The violation of compatibility (2.12),
+  ///
+  ///     (sigma0, eps(v)) + j(v) >= L(0, v)  for all v,
+  ///
+  /// relative to the loads: the norm of the residual off Gamma_3 and of its
+  /// excess over the friction ball on Gamma_3. Evaluated with sigma0 itself by
+  /// quadrature: its projection would violate equilibrium by O(h). Also gives
+  /// the multipliers at t = 0. @p face is null without contact points.
+  /// Collective.
   template <int dim>
   CompatibilityViolation<dim>
   compatibility_violation(const AdmissibleSpace<dim> &space,

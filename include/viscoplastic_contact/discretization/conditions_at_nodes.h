@@ -28,15 +28,13 @@ namespace Viscoplastic
     std::vector<bool> waits;
   };
 
-  /**
-   * Which conditions the nodes of a mesh carry: those of the boundary faces
-   * that they are on, but not of absent materials beside the body, of contact
-   * of absent materials, or with another body where nothing lies opposite, or
-   * at hanging nodes.
-   * @p node_position: of each owned node. Owners know all ids at their nodes,
-   * since every neighbor of an owned cell is at least a ghost. Throws
-   * ExcMessage where there are more than 52 conditions.
-   */
+  /// Which conditions the nodes of a mesh carry: those of the boundary faces
+  /// that they are on, but not of absent materials beside the body, of contact
+  /// of absent materials, or with another body where nothing lies opposite, or
+  /// at hanging nodes.
+  /// @p node_position: of each owned node. Owners know all ids at their nodes,
+  /// since every neighbor of an owned cell is at least a ghost. Throws
+  /// ExcMessage where there are more than 52 conditions.
   template <int dim>
   ConditionsAtNodes<dim>
   conditions_at_nodes(

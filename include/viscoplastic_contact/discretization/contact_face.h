@@ -17,13 +17,11 @@
 
 namespace Viscoplastic
 {
-  /**
-   * Gamma_3 on the mesh: makes the points of a ContactLayout from the nodes
-   * with friction or unilateral contact, the bounds rho_c(t) = int rho(x,t)
-   * phi_c, and the gaps g_c = g(x_c), with phi_c the basis functions that
-   * hanging nodes leave. Each rank has the points of the nodes that it owns, in
-   * the order of their positions.
-   */
+  /// Gamma_3 on the mesh: makes the points of a ContactLayout from the nodes
+  /// with friction or unilateral contact, the bounds rho_c(t) = int rho(x,t)
+  /// phi_c, and the gaps g_c = g(x_c), with phi_c the basis functions that
+  /// hanging nodes leave. Each rank has the points of the nodes that it owns,
+  /// in the order of their positions.
   template <int dim>
   class ContactFace
   {
@@ -54,11 +52,9 @@ namespace Viscoplastic
     types::global_dof_index
     n_global_points(const bool of_obstacles = false) const;
 
-    /**
-     * How fast each point slips with a velocity (Cartesian, with ghosts) that
-     * is the mean between two times; empty where no bound depends on it.
-     * Collective.
-     */
+    /// How fast each point slips with a velocity (Cartesian, with ghosts) that
+    /// is the mean between two times; empty where no bound depends on it.
+    /// Collective.
     std::vector<double>
     slip_rates(const DistributedVector &velocity,
                const double             t_old,
@@ -70,11 +66,9 @@ namespace Viscoplastic
     std::vector<double>
     bounds(const double t, const std::vector<double> &slip_rates = {}) const;
 
-    /**
-     * The bounds of a step to time t, of obstacles what is left of g_c at @p u,
-     * the displacement at the beginning of the step (in frames) with the
-     * prescribed values of its end. Collective.
-     */
+    /// The bounds of a step to time t, of obstacles what is left of g_c at @p
+    /// u, the displacement at the beginning of the step (in frames) with the
+    /// prescribed values of its end. Collective.
     std::vector<double>
     step_bounds(const double               t,
                 const DistributedVector   &u,
@@ -129,10 +123,9 @@ namespace Viscoplastic
       return any_gives_way;
     }
 
-    /**
-     * Let a state at rest see the obstacles as they are at @p u (in frames) at
-     * time t: their distance, and the force of those that give way. Collective.
-     */
+    /// Let a state at rest see the obstacles as they are at @p u (in frames) at
+    /// time t: their distance, and the force of those that give way.
+    /// Collective.
     void
     set_obstacles(const double             t,
                   const DistributedVector &u,
@@ -194,10 +187,8 @@ namespace Viscoplastic
     Tensor<1, dim>
     resultant_on_foundations(const ContactState &state) const;
 
-    /**
-     * How far the foundation of each point slides between two times, along the
-     * directions of the slip of that point. Empty if no foundation moves.
-     */
+    /// How far the foundation of each point slides between two times, along the
+    /// directions of the slip of that point. Empty if no foundation moves.
     std::vector<Tensor<1, 2>>
     foundation_step(const double t_old, const double t) const;
 
@@ -208,12 +199,10 @@ namespace Viscoplastic
     slips(const DistributedVector         &change,
           const std::vector<Tensor<1, 2>> &foundation_step = {}) const;
 
-    /**
-     * The multiplier as a nodal density lambda_c/m_c, Cartesian and with
-     * ghosts; zero off Gamma_3, but that of the reverse forces on the other
-     * side where there is one. That of obstacles is part of it, unless @p
-     * of_friction_alone. Collective.
-     */
+    /// The multiplier as a nodal density lambda_c/m_c, Cartesian and with
+    /// ghosts; zero off Gamma_3, but that of the reverse forces on the other
+    /// side where there is one. That of obstacles is part of it, unless @p
+    /// of_friction_alone. Collective.
     DistributedVector
     density(const ContactState &state,
             const bool          of_friction_alone = false) const;

@@ -7,10 +7,8 @@
 
 namespace Viscoplastic
 {
-  /**
-   * Where bilateral contact pulls at the body instead of pressing: it does not
-   * open, so this is what tells whether the model is still the reality.
-   */
+  /// Where bilateral contact pulls at the body instead of pressing: it does not
+  /// open, so this is what tells whether the model is still the reality.
   template <int dim>
   class ContactTension
   {

@@ -17,11 +17,9 @@
 
 namespace Viscoplastic
 {
-  /**
-   * A scene on one mesh: everything that depends on the mesh but neither on the
-   * state nor on how steps are solved. Declared in the order of dependence;
-   * made anew when the mesh changes.
-   */
+  /// A scene on one mesh: everything that depends on the mesh but neither on
+  /// the state nor on how steps are solved. Declared in the order of
+  /// dependence; made anew when the mesh changes.
   template <int dim>
   class Discretization
   {

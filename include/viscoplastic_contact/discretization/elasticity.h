@@ -10,10 +10,8 @@
 
 namespace Viscoplastic
 {
-  /**
-   * The elastic tensor of each owned cell, taken at the cell's center; one
-   * object if it is the same everywhere.
-   */
+  /// The elastic tensor of each owned cell, taken at the cell's center; one
+  /// object if it is the same everywhere.
   template <int dim>
   class ElasticModuli
   {
@@ -47,13 +45,11 @@ namespace Viscoplastic
   };
 
 
-  /**
-   * The bilinear form a(u,v) = int E eps(u) : eps(v), fully integrated, as a
-   * matrix in nodal frames without hanging nodes. Prescribed components keep
-   * their rows: they give the reactions, and whoever solves leaves them out.
-   *
-   * With @p mean_dilatation, tr eps is replaced by its mean over the cell.
-   */
+  /// The bilinear form a(u,v) = int E eps(u) : eps(v), fully integrated, as a
+  /// matrix in nodal frames without hanging nodes. Prescribed components keep
+  /// their rows: they give the reactions, and whoever solves leaves them out.
+  ///
+  /// With @p mean_dilatation, tr eps is replaced by its mean over the cell.
   template <int dim>
   void
   assemble_elastic_matrix(const AdmissibleSpace<dim> &space,
@@ -61,13 +57,11 @@ namespace Viscoplastic
                           const bool                  mean_dilatation,
                           DistributedMatrix          &matrix);
 
-  /**
-   * The same form for one cell: strains of the shape functions at the points
-   * of @p fe_values against each other, with hoop strains of rings. Declared
-   * here for the tests of its coercivity. A matrix with a node more than the
-   * cell has, in generalized plane strain, also has what @p axial_strain as
-   * that of its first component makes.
-   */
+  /// The same form for one cell: strains of the shape functions at the points
+  /// of @p fe_values against each other, with hoop strains of rings. Declared
+  /// here for the tests of its coercivity. A matrix with a node more than the
+  /// cell has, in generalized plane strain, also has what @p axial_strain as
+  /// that of its first component makes.
   template <int dim>
   void
   elastic_cell_matrix(const FEValues<dim> &fe_values,

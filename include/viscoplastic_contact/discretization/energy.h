@@ -22,12 +22,10 @@ namespace Viscoplastic
     /// 1/2 int E^-1 z : z, and what laws with an energy of their own store
     /// beyond 1/2 int E^-1 sigma : sigma.
     double irreversible_energy = 0.;
-    /**
-     * -int (z_n - z_{n-1}) : A with the driving strain A of the law,
-     * E^-1 sigma for most, at the mean of the states at t_{n-1} and t_n: the
-     * viscous dissipation of the step; with this mean the balance of energy of
-     * the bulk is exact, whatever the step size.
-     */
+    /// -int (z_n - z_{n-1}) : A with the driving strain A of the law,
+    /// E^-1 sigma for most, at the mean of the states at t_{n-1} and t_n: the
+    /// viscous dissipation of the step; with this mean the balance of energy of
+    /// the bulk is exact, whatever the step size.
     double viscous_dissipation = 0.;
     /// -int sigma : (what the step has added to the thermal strain), at the
     /// same mean: what heating has done to the body.
@@ -61,10 +59,8 @@ namespace Viscoplastic
                    const State<dim>                     &state,
                    const std::size_t                     cell);
 
-  /**
-   * norm(sigma - P0 sigma)/norm(sigma) with sigma = E eps(u) + z: how much of
-   * the stress the cell means do not see. Collective.
-   */
+  /// norm(sigma - P0 sigma)/norm(sigma) with sigma = E eps(u) + z: how much of
+  /// the stress the cell means do not see. Collective.
   template <int dim>
   double
   relative_stress_fluctuation(const StressSpace<dim> &stress_space,

@@ -11,11 +11,9 @@
 
 namespace Viscoplastic
 {
-  /**
-   * Which law G each owned cell has, and what the parameters of the law are at
-   * each of its samples. Parameters of laws that do not depend on time are
-   * evaluated once.
-   */
+  /// Which law G each owned cell has, and what the parameters of the law are at
+  /// each of its samples. Parameters of laws that do not depend on time are
+  /// evaluated once.
   template <int dim>
   class FlowLaws
   {
@@ -139,12 +137,10 @@ namespace Viscoplastic
       return AtTime(*this, t, history.empty() ? nullptr : &history);
     }
 
-    /**
-     * What a manufactured solution adds to G at a sample,
-     * sigma' - E eps(u') - G(t, sigma, eps(u)) of that solution; zero in other
-     * scenes. The time derivatives are those of the step on this side of
-     * the time of @p now.
-     */
+    /// What a manufactured solution adds to G at a sample,
+    /// sigma' - E eps(u') - G(t, sigma, eps(u)) of that solution; zero in other
+    /// scenes. The time derivatives are those of the step on this side of
+    /// the time of @p now.
     SymmetricTensor<2, 3>
     source(const AtTime                           &now,
            const std::size_t                       cell,

@@ -48,12 +48,10 @@ namespace Viscoplastic
                   const DistributedMatrix    &matrix,
                   const Forces<dim>          &forces);
 
-  /**
-   * The forces on the body at prescribed components, summed for each boundary
-   * and support, by id. The force at a node that several conditions hold has a
-   * part along the direction of each condition, which counts for its id, so
-   * that the sum over the ids is the total. Collective.
-   */
+  /// The forces on the body at prescribed components, summed for each boundary
+  /// and support, by id. The force at a node that several conditions hold has a
+  /// part along the direction of each condition, which counts for its id, so
+  /// that the sum over the ids is the total. Collective.
   template <int dim>
   std::map<types::boundary_id, Tensor<1, dim>>
   reactions(const AdmissibleSpace<dim> &space, const Forces<dim> &forces);
@@ -64,10 +62,8 @@ namespace Viscoplastic
   double
   axial_force(const AdmissibleSpace<dim> &space, const Forces<dim> &forces);
 
-  /**
-   * Work by prescribed displacements and loads between two states, with mean
-   * forces (trapezoidal rule). Collective.
-   */
+  /// Work by prescribed displacements and loads between two states, with mean
+  /// forces (trapezoidal rule). Collective.
   template <int dim>
   double
   external_work(const AdmissibleSpace<dim> &space,

@@ -17,11 +17,9 @@ namespace Viscoplastic
                    const std::set<types::boundary_id> &ids);
 
 
-  /**
-   * What holds two bodies together where no contact point does: the traction of
-   * glue, and the normal one of bilateral contact. It is the force that the
-   * equations of the jumps' prescribed components are out of balance by.
-   */
+  /// What holds two bodies together where no contact point does: the traction
+  /// of glue, and the normal one of bilateral contact. It is the force that the
+  /// equations of the jumps' prescribed components are out of balance by.
   template <int dim>
   class HeldTraction
   {
@@ -33,12 +31,10 @@ namespace Viscoplastic
     static bool
     is_needed(const Scene<dim> &scene);
 
-    /**
-     * Add the nodal density lambda_p/m_p, Cartesian with ghosts, as
-     * ContactFace::density() has those of contact points: with the reverse
-     * forces on the other side. @p missing is L(v) - (sigma_h, eps(v)), in
-     * frames; @p density may be empty before. Collective.
-     */
+    /// Add the nodal density lambda_p/m_p, Cartesian with ghosts, as
+    /// ContactFace::density() has those of contact points: with the reverse
+    /// forces on the other side. @p missing is L(v) - (sigma_h, eps(v)), in
+    /// frames; @p density may be empty before. Collective.
     void
     add_density(const DistributedVector &missing,
                 DistributedVector       &density) const;

@@ -5,11 +5,9 @@
 
 namespace Viscoplastic
 {
-  /**
-   * Backward Euler at all samples: z_n for the strains of @p ghosted_u, from
-   * @p start. Elastic cells keep their z. Throws on all ranks if there is no
-   * solution at a sample of one. Collective.
-   */
+  /// Backward Euler at all samples: z_n for the strains of @p ghosted_u, from
+  /// @p start. Elastic cells keep their z. Throws on all ranks if there is no
+  /// solution at a sample of one. Collective.
   template <int dim>
   IrreversibleStress
   implicit_irreversible_stress(const typename FlowLaws<dim>::AtTime &laws,

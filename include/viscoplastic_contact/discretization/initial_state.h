@@ -8,24 +8,20 @@
 
 namespace Viscoplastic
 {
-  /**
-   * u0^h, the projection of u0 in (eps(u), eps(v)), and
-   * z_0 = sigma0^h - E eps(u0^h) with the L2 projection sigma0^h of sigma0;
-   * zero fields stay absent. Collective.
-   *
-   * Throws ExcMessage if u0 contradicts the displacements prescribed at t = 0,
-   * unless @p equilibrate will mend that.
-   */
+  /// u0^h, the projection of u0 in (eps(u), eps(v)), and
+  /// z_0 = sigma0^h - E eps(u0^h) with the L2 projection sigma0^h of sigma0;
+  /// zero fields stay absent. Collective.
+  ///
+  /// Throws ExcMessage if u0 contradicts the displacements prescribed at t = 0,
+  /// unless @p equilibrate will mend that.
   template <int dim>
   State<dim>
   make_initial_state(const StressSpace<dim> &stress_space,
                      const bool              equilibrate);
 
-  /**
-   * The displacement as it is reported: that of @p state, or if the scene asks
-   * for `Reset displacement' what has been added to u_0, written to
-   * @p difference. Cartesian, with ghosts.
-   */
+  /// The displacement as it is reported: that of @p state, or if the scene asks
+  /// for `Reset displacement' what has been added to u_0, written to
+  /// @p difference. Cartesian, with ghosts.
   template <int dim>
   const DistributedVector &
   reported_displacement(const Scene<dim>  &scene,
@@ -47,35 +43,29 @@ namespace Viscoplastic
   work_of_initial_stress(const AdmissibleSpace<dim> &space,
                          const unsigned int          n_points);
 
-  /**
-   * z_0 = sigma0^h - E eps(u0^h) at the samples; @p u0 is Cartesian, with
-   * ghosts, or of size 0 if it is zero.
-   */
+  /// z_0 = sigma0^h - E eps(u0^h) at the samples; @p u0 is Cartesian, with
+  /// ghosts, or of size 0 if it is zero.
   template <int dim>
   IrreversibleStress
   initial_irreversible_stress(const StressSpace<dim>  &stress_space,
                               const DistributedVector &u0);
 
-  /**
-   * |u0 - u0^h| in the energy norm plus |sigma0 - sigma0^h| in that of
-   * stresses, (int E^-1 s : s)^{1/2}, by quadrature, where sigma0^h is the
-   * polynomial through the samples of a cell; @p state as
-   * make_initial_state() gives it. Zero and free without initial data. @p
-   * squared_by_cell gets the squares that active cells contribute, zero on
-   * cells of other ranks, unless it is null. Collective.
-   */
+  /// |u0 - u0^h| in the energy norm plus |sigma0 - sigma0^h| in that of
+  /// stresses, (int E^-1 s : s)^{1/2}, by quadrature, where sigma0^h is the
+  /// polynomial through the samples of a cell; @p state as
+  /// make_initial_state() gives it. Zero and free without initial data. @p
+  /// squared_by_cell gets the squares that active cells contribute, zero on
+  /// cells of other ranks, unless it is null. Collective.
   template <int dim>
   double
   initial_data_error(const StressSpace<dim> &stress_space,
                      const State<dim>       &state,
                      Vector<double>         *squared_by_cell = nullptr);
 
-  /**
-   * Let the present stage of construction begin with a state of the one before:
-   * cells that have gone have no stress, and those that have come have none in
-   * the place that the body has moved to, z = -E eps(u). @p was_present: by
-   * owned cell, in the stage before.
-   */
+  /// Let the present stage of construction begin with a state of the one
+  /// before: cells that have gone have no stress, and those that have come have
+  /// none in the place that the body has moved to, z = -E eps(u). @p
+  /// was_present: by owned cell, in the stage before.
   template <int dim>
   void
   enter_stage(const StressSpace<dim>  &stress_space,

@@ -7,11 +7,9 @@
 
 namespace Viscoplastic
 {
-  /**
-   * How far two bodies slide along each other, and what of a face finds nothing
-   * opposite: they touch where they did at first, so that what lies opposite is
-   * right as long as slides are small beside a face.
-   */
+  /// How far two bodies slide along each other, and what of a face finds
+  /// nothing opposite: they touch where they did at first, so that what lies
+  /// opposite is right as long as slides are small beside a face.
   template <int dim>
   class InterfaceSlide
   {

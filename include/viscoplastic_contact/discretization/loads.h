@@ -27,14 +27,12 @@ namespace Viscoplastic
   };
 
 
-  /**
-   * The load functional
-   *
-   *     L(t,v) = int b.v + int_Gamma2 (F - p nu).v + int_Gamma3 S v_nu
-   *
-   * and, in generalized plane strain, N eps_zz(v), with nu as it is on the
-   * faces of the mesh. What does not depend on time is integrated once.
-   */
+  /// The load functional
+  ///
+  ///     L(t,v) = int b.v + int_Gamma2 (F - p nu).v + int_Gamma3 S v_nu
+  ///
+  /// and, in generalized plane strain, N eps_zz(v), with nu as it is on the
+  /// faces of the mesh. What does not depend on time is integrated once.
   template <int dim>
   class Loads
   {

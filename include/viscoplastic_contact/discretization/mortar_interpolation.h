@@ -25,31 +25,29 @@ namespace Viscoplastic
   using MortarRows = std::map<NodeHierarchy::Node, MortarRow>;
 
 
-  /**
-   * The interpolation Q of the trace v of the primary side at the nodes p of
-   * the secondary side by dual basis functions psi_p, which are biorthogonal to
-   * the nodal ones phi_q on each face e,
-   *
-   *     (Q v)_p = sum_e int_e psi_p v / int phi_p,
-   *     int_e psi_p phi_q = delta_pq int_e phi_p
-   *
-   * (Wohlmuth, SIAM J. Numer. Anal. 38, 2000). v is taken where the normal at
-   * a place of e meets the primary side, whose vertices cut e; integrals are
-   * exact for flat faces that are parallelograms. With a hanging node h between
-   * a and b, (Q v)_a becomes
-   *
-   *     (Q v)_a + sum_h c_h ((Q v)_h - (Q v)_a/2 - (Q v)_b/2),
-   *     c_h = D_h/(D_a + D_b),
-   *
-   * where D are the integrals of the basis functions, for a and b of those that
-   * hanging nodes leave. So linear v are exact, and sum_p D_p (Q v)_p is the
-   * integral of v: rigid motions meet no resistance, and a constant pressure
-   * passes the interface as it is.
-   *
-   * Returns the rows of independent nodes among the locally relevant ones,
-   * without those of which some part of the support has nothing opposite.
-   * Collective.
-   */
+  /// The interpolation Q of the trace v of the primary side at the nodes p of
+  /// the secondary side by dual basis functions psi_p, which are biorthogonal
+  /// to the nodal ones phi_q on each face e,
+  ///
+  ///     (Q v)_p = sum_e int_e psi_p v / int phi_p,
+  ///     int_e psi_p phi_q = delta_pq int_e phi_p
+  ///
+  /// (Wohlmuth, SIAM J. Numer. Anal. 38, 2000). v is taken where the normal at
+  /// a place of e meets the primary side, whose vertices cut e; integrals are
+  /// exact for flat faces that are parallelograms. With a hanging node h
+  /// between a and b, (Q v)_a becomes
+  ///
+  ///     (Q v)_a + sum_h c_h ((Q v)_h - (Q v)_a/2 - (Q v)_b/2),
+  ///     c_h = D_h/(D_a + D_b),
+  ///
+  /// where D are the integrals of the basis functions, for a and b of those
+  /// that hanging nodes leave. So linear v are exact, and sum_p D_p (Q v)_p is
+  /// the integral of v: rigid motions meet no resistance, and a constant
+  /// pressure passes the interface as it is.
+  ///
+  /// Returns the rows of independent nodes among the locally relevant ones,
+  /// without those of which some part of the support has nothing opposite.
+  /// Collective.
   template <int dim>
   MortarRows
   mortar_interpolation(const DoFHandler<dim>           &dof_handler,

@@ -10,13 +10,11 @@
 
 namespace Viscoplastic
 {
-  /**
-   * The slip that one friction point can make. At a node where Gamma_3 is flat
-   * this is the tangent plane. Where pieces meet at an angle there is one point
-   * a piece; its slip is the part of the piece's tangential displacement that
-   * the other conditions at the node leave free. Pieces whose foundations move
-   * in different ways have a point each, too.
-   */
+  /// The slip that one friction point can make. At a node where Gamma_3 is flat
+  /// this is the tangent plane. Where pieces meet at an angle there is one
+  /// point a piece; its slip is the part of the piece's tangential displacement
+  /// that the other conditions at the node leave free. Pieces whose foundations
+  /// move in different ways have a point each, too.
   template <int dim>
   struct FrictionPlane
   {
@@ -30,11 +28,9 @@ namespace Viscoplastic
   };
 
 
-  /**
-   * A plane of the foundation that keeps a node on its side: what of the normal
-   * displacement the other conditions at the node leave free, and what they
-   * prescribe of it.
-   */
+  /// A plane of the foundation that keeps a node on its side: what of the
+  /// normal displacement the other conditions at the node leave free, and what
+  /// they prescribe of it.
   template <int dim>
   struct Obstacle
   {
@@ -47,10 +43,8 @@ namespace Viscoplastic
   };
 
 
-  /**
-   * The orthonormal frame of displacement components at a node, chosen so that
-   * what is prescribed there are single components.
-   */
+  /// The orthonormal frame of displacement components at a node, chosen so that
+  /// what is prescribed there are single components.
   template <int dim>
   struct NodalFrame
   {
@@ -76,13 +70,11 @@ namespace Viscoplastic
   };
 
 
-  /**
-   * The frame of a node where @p conditions meet (in the order of their ids).
-   * Where conditions compete, those that fix more come first: clamped, given
-   * components, glued, symmetry, bilateral contact, supports; a condition whose
-   * direction depends on the others is dropped. Conditions on curved boundaries
-   * have the normal @p varying_normal here.
-   */
+  /// The frame of a node where @p conditions meet (in the order of their ids).
+  /// Where conditions compete, those that fix more come first: clamped, given
+  /// components, glued, symmetry, bilateral contact, supports; a condition
+  /// whose direction depends on the others is dropped. Conditions on curved
+  /// boundaries have the normal @p varying_normal here.
   template <int dim>
   NodalFrame<dim>
   make_nodal_frame(
@@ -90,12 +82,10 @@ namespace Viscoplastic
     const Tensor<1, dim>                              &varying_normal = {});
 
 
-  /**
-   * M_ij = (direction of condition i) . (direction of fixed component j),
-   * padded by the identity: the fixed components a satisfy M a = data, and
-   * constraint forces r in the fixed components are made of M^-T r along the
-   * directions of the conditions.
-   */
+  /// M_ij = (direction of condition i) . (direction of fixed component j),
+  /// padded by the identity: the fixed components a satisfy M a = data, and
+  /// constraint forces r in the fixed components are made of M^-T r along the
+  /// directions of the conditions.
   template <int dim>
   Tensor<2, dim>
   condition_matrix(const NodalFrame<dim> &frame);

@@ -305,11 +305,9 @@ namespace Viscoplastic
 
 
 
-  /**
-   * Clip one convex quadrilateral at the edges of the other (Sutherland and
-   * Hodgman, Comm. ACM 17, 1974), which rounding does not trouble where edges
-   * coincide, and cut the rest into triangles.
-   */
+  /// Clip one convex quadrilateral at the edges of the other (Sutherland and
+  /// Hodgman, Comm. ACM 17, 1974), which rounding does not trouble where edges
+  /// coincide, and cut the rest into triangles.
   inline std::vector<Simplex<2>>
   intersection(const PlaneFace<2> &a, const PlaneFace<2> &b)
   {

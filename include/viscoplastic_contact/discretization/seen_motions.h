@@ -30,11 +30,9 @@ namespace Viscoplastic
   std::string
   in_words(std::vector<RigidMotion> motions);
 
-  /**
-   * What conditions see of the rigid motions, row by row, as the triangle R
-   * of rows = Q R. (R^T R would not tell the width of a thin sheet from
-   * rounding.)
-   */
+  /// What conditions see of the rigid motions, row by row, as the triangle R
+  /// of rows = Q R. (R^T R would not tell the width of a thin sheet from
+  /// rounding.)
   class SeenMotions
   {
   public:

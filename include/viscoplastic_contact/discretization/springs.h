@@ -8,14 +8,12 @@
 
 namespace Viscoplastic
 {
-  /**
-   * Springs between pieces of the boundary and the ground, the form
-   *
-   *     sum over the pieces of int k_n u_nu v_nu + k_t u_tau . v_tau,
-   *
-   * which is part of the matrix of a body. The stiffnesses are those of the
-   * points of a 2^(dim-1)-point Gauss rule on each face.
-   */
+  /// Springs between pieces of the boundary and the ground, the form
+  ///
+  ///     sum over the pieces of int k_n u_nu v_nu + k_t u_tau . v_tau,
+  ///
+  /// which is part of the matrix of a body. The stiffnesses are those of the
+  /// points of a 2^(dim-1)-point Gauss rule on each face.
   template <int dim>
   class Springs
   {

@@ -8,10 +8,8 @@
 
 namespace Viscoplastic
 {
-  /**
-   * All that a step changes. A step is a pure function of an accepted state, a
-   * time and a step size: it makes a new State and leaves the old one alone.
-   */
+  /// All that a step changes. A step is a pure function of an accepted state, a
+  /// time and a step size: it makes a new State and leaves the old one alone.
   template <int dim>
   struct State
   {

@@ -11,31 +11,27 @@
 
 namespace Viscoplastic
 {
-  /**
-   * The irreversible stress z = sigma - E eps(u), an element of Q_h by its
-   * coefficients: StressSpace::n_samples tensors for each owned cell. Always
-   * tensors of three dimensions: plane strain has z_zz.
-   */
+  /// The irreversible stress z = sigma - E eps(u), an element of Q_h by its
+  /// coefficients: StressSpace::n_samples tensors for each owned cell. Always
+  /// tensors of three dimensions: plane strain has z_zz.
   using IrreversibleStress = std::vector<SymmetricTensor<2, 3>>;
 
 
-  /**
-   * The space Q_h of stresses, the paper's H^h: symmetric tensors that are
-   * constant in each cell, FE_DGQ(0). As its refinement, tensors at the Gauss
-   * points of each cell, FE_DGQArbitraryNodes of QGauss(2). An element of the
-   * space is a list of coefficients, its samples.
-   *
-   * The space knows the projection P_Qh of strains, (3.1), and its transpose,
-   * the virtual work of stresses. It keeps the gradients of the shape functions
-   * of V_h, projected, so that the time loop needs no FEValues: 2^dim (dim +
-   * 1/2) doubles a sample.
-   *
-   * In generalized plane strain the strain has zz of the whole section, which
-   * stresses work on, too.
-   *
-   * With mean dilatation, the strain has the volumetric part of its cell mean
-   * and stresses act on such strains, as in the elastic form.
-   */
+  /// The space Q_h of stresses, the paper's H^h: symmetric tensors that are
+  /// constant in each cell, FE_DGQ(0). As its refinement, tensors at the Gauss
+  /// points of each cell, FE_DGQArbitraryNodes of QGauss(2). An element of the
+  /// space is a list of coefficients, its samples.
+  ///
+  /// The space knows the projection P_Qh of strains, (3.1), and its transpose,
+  /// the virtual work of stresses. It keeps the gradients of the shape
+  /// functions of V_h, projected, so that the time loop needs no FEValues:
+  /// 2^dim (dim + 1/2) doubles a sample.
+  ///
+  /// In generalized plane strain the strain has zz of the whole section, which
+  /// stresses work on, too.
+  ///
+  /// With mean dilatation, the strain has the volumetric part of its cell mean
+  /// and stresses act on such strains, as in the elastic form.
   template <int dim>
   class StressSpace
   {

@@ -13,15 +13,14 @@ namespace Viscoplastic
   struct SurfaceFace;
 
 
-  /**
-   * Outward normals at the nodes of curved boundaries on which two bodies are
-   * in contact, of both sides: those of the faces around, each weighted by
-   * 1/length in the plane, and in space by the sine of its angle over the
-   * product of the edges there (Max, J. Graphics Tools 4, 1999), which is exact
-   * where vertices lie on a circle or sphere. On a plane of symmetry they are
-   * those of the body with its mirror image. Hanging nodes have the mean of
-   * their parents', and are lifted to the surface, see SurfaceFace::bulge().
-   */
+  /// Outward normals at the nodes of curved boundaries on which two bodies are
+  /// in contact, of both sides: those of the faces around, each weighted by
+  /// 1/length in the plane, and in space by the sine of its angle over the
+  /// product of the edges there (Max, J. Graphics Tools 4, 1999), which is
+  /// exact where vertices lie on a circle or sphere. On a plane of symmetry
+  /// they are those of the body with its mirror image. Hanging nodes have the
+  /// mean of their parents', and are lifted to the surface, see
+  /// SurfaceFace::bulge().
   template <int dim>
   class SurfaceNormals
   {

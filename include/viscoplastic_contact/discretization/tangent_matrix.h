@@ -8,14 +8,12 @@
 
 namespace Viscoplastic
 {
-  /**
-   * The matrix of a step of backward Euler,
-   *
-   *     a(u, v) + sum_s w_s (C_s - E) eps_s(u) : eps_s(v),
-   *
-   * with an algorithmic tangent C_s at each sample, where the flow sees the
-   * strain; the rest of the strain within cells stays elastic.
-   */
+  /// The matrix of a step of backward Euler,
+  ///
+  ///     a(u, v) + sum_s w_s (C_s - E) eps_s(u) : eps_s(v),
+  ///
+  /// with an algorithmic tangent C_s at each sample, where the flow sees the
+  /// strain; the rest of the strain within cells stays elastic.
   template <int dim>
   class TangentMatrix
   {
@@ -26,12 +24,10 @@ namespace Viscoplastic
     /// Whether the tangents depend on the step size alone.
     const bool is_constant;
 
-    /**
-     * Take the tangents of a step at the strain of @p ghosted_u and at z, of
-     * the laws at its end with the history variables of its beginning, and
-     * make the matrix of them, unless it has them already. Returns whether it
-     * is another matrix now. Collective.
-     */
+    /// Take the tangents of a step at the strain of @p ghosted_u and at z, of
+    /// the laws at its end with the history variables of its beginning, and
+    /// make the matrix of them, unless it has them already. Returns whether it
+    /// is another matrix now. Collective.
     bool
     linearize(const DistributedVector              &ghosted_u,
               const IrreversibleStress             &z,
@@ -73,11 +69,9 @@ namespace Viscoplastic
                 const DistributedVector  &ghosted_from,
                 const DistributedVector  &ghosted_to) const;
 
-    /**
-     * The norm of stresses (sum_s w_s C^-1 tau : tau)^(1/2). It bounds the norm
-     * of the functional sum_s w_s tau : eps_s(v) in the dual of the matrix's
-     * energy norm. Collective.
-     */
+    /// The norm of stresses (sum_s w_s C^-1 tau : tau)^(1/2). It bounds the
+    /// norm of the functional sum_s w_s tau : eps_s(v) in the dual of the
+    /// matrix's energy norm. Collective.
     double
     norm(const IrreversibleStress &stress) const;
 

@@ -9,17 +9,15 @@
 
 namespace Viscoplastic
 {
-  /**
-   * The temperature T and the thermal strain alpha (T - T_0) I at the samples
-   * of all owned cells. With it
-   *
-   *     sigma = E (eps(u) - alpha (T - T_0) I) + z':
-   *
-   * the thermal stress -E alpha (T - T_0) I is a part of
-   * z = sigma - E eps(u), which follows it from step to step, so that only
-   * those who ask for what has flowed, or for the strain that a law knows, must
-   * know of it. With cell means, that of the cell's center counts.
-   */
+  /// The temperature T and the thermal strain alpha (T - T_0) I at the samples
+  /// of all owned cells. With it
+  ///
+  ///     sigma = E (eps(u) - alpha (T - T_0) I) + z':
+  ///
+  /// the thermal stress -E alpha (T - T_0) I is a part of
+  /// z = sigma - E eps(u), which follows it from step to step, so that only
+  /// those who ask for what has flowed, or for the strain that a law knows,
+  /// must know of it. With cell means, that of the cell's center counts.
   template <int dim>
   class ThermalStrain
   {

@@ -10,15 +10,14 @@
 
 namespace Viscoplastic
 {
-  /**
-   * One cycle of smoothed aggregation for a first level that is large, as
-   * meshes from files are.
-   *
-   * It is built for the masks of its first use and kept while they change,
-   * until a tenth of them lets other directions free. Meanwhile its corrections
-   * are cut to what is free, and the sweeps around it know the present masks
-   * and springs. Cycles with the same masks, as without friction, share one.
-   */
+  /// One cycle of smoothed aggregation for a first level that is large, as
+  /// meshes from files are.
+  ///
+  /// It is built for the masks of its first use and kept while they change,
+  /// until a tenth of them lets other directions free. Meanwhile its
+  /// corrections are cut to what is free, and the sweeps around it know the
+  /// present masks and springs. Cycles with the same masks, as without
+  /// friction, share one.
   template <int dim>
   class AlgebraicCoarseSolver : public CoarseSolver<dim>
   {

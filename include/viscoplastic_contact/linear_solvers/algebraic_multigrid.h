@@ -11,25 +11,21 @@
 
 namespace Viscoplastic
 {
-  /**
-   * Smoothed aggregation with the rigid body modes (ML): for any matrix, on any
-   * mesh.
-   *
-   * It is built for the stick set of the first solve: its matrix has the rows
-   * and columns of prescribed and blocked components cut off. While the set
-   * moves on, it is kept and filtered by the present truncation, which costs
-   * iterations; it is rebuilt when the iterations lost since the last set-up
-   * would have paid for a new one. The count, not the clock, decides, so runs
-   * are reproducible.
-   */
+  /// Smoothed aggregation with the rigid body modes (ML): for any matrix, on
+  /// any mesh.
+  ///
+  /// It is built for the stick set of the first solve: its matrix has the rows
+  /// and columns of prescribed and blocked components cut off. While the set
+  /// moves on, it is kept and filtered by the present truncation, which costs
+  /// iterations; it is rebuilt when the iterations lost since the last set-up
+  /// would have paid for a new one. The count, not the clock, decides, so runs
+  /// are reproducible.
   class AlgebraicMultigrid : public Preconditioner
   {
   public:
-    /**
-     * @p excluded: owned degrees of freedom that are no unknowns;
-     * @p rigid_body_modes: on owned entries, zero where excluded;
-     * @p dim degrees of freedom a node.
-     */
+    /// @p excluded: owned degrees of freedom that are no unknowns;
+    /// @p rigid_body_modes: on owned entries, zero where excluded;
+    /// @p dim degrees of freedom a node.
     AlgebraicMultigrid(const DistributedMatrix       &matrix,
                        std::vector<bool>              excluded,
                        std::vector<DistributedVector> rigid_body_modes,
@@ -92,12 +88,10 @@ namespace Viscoplastic
 
     FaceTruncation truncation;
     bool           has_springs = false;
-    /**
-     * D of owned face entries, empty without springs: D^2 = diag(K + springs
-     * known to M)/diag(K + springs), at most 1, tends to 0 for a point that
-     * comes to rest, so that stiff new springs do not spoil a preconditioner
-     * D M^{-1} D that does not know them.
-     */
+    /// D of owned face entries, empty without springs: D^2 = diag(K + springs
+    /// known to M)/diag(K + springs), at most 1, tends to 0 for a point that
+    /// comes to rest, so that stiff new springs do not spoil a preconditioner
+    /// D M^{-1} D that does not know them.
     Vector<double>            damping;
     mutable DistributedVector damped;
 

@@ -11,10 +11,8 @@ namespace Viscoplastic
   using NodeBlock = Tensor<2, dim>;
 
 
-  /**
-   * The rows of a matrix that belong to some nodes, in compressed form; columns
-   * are nodes by number, in ascending order.
-   */
+  /// The rows of a matrix that belong to some nodes, in compressed form;
+  /// columns are nodes by number, in ascending order.
   template <int dim>
   struct BlockRows
   {
@@ -30,11 +28,9 @@ namespace Viscoplastic
   };
 
 
-  /**
-   * The owned rows of a matrix in nodal frames, in Cartesian components and
-   * divided by @p unit, for the nodes of the last mesh of @p hierarchy. Rows
-   * and columns of @p excluded degrees of freedom are zero. Collective.
-   */
+  /// The owned rows of a matrix in nodal frames, in Cartesian components and
+  /// divided by @p unit, for the nodes of the last mesh of @p hierarchy. Rows
+  /// and columns of @p excluded degrees of freedom are zero. Collective.
   template <int dim>
   BlockRows<dim>
   cartesian_rows(const DistributedMatrix                &matrix,
@@ -44,11 +40,9 @@ namespace Viscoplastic
                  const double                            unit);
 
 
-  /**
-   * Interpolation from one mesh of a hierarchy to the next: for each node the
-   * coarse nodes and weights. Rows of owned nodes come first, then those of
-   * the ghosts that a matrix couples them with.
-   */
+  /// Interpolation from one mesh of a hierarchy to the next: for each node the
+  /// coarse nodes and weights. Rows of owned nodes come first, then those of
+  /// the ghosts that a matrix couples them with.
   struct Interpolation
   {
     std::vector<std::size_t>           begin{0};
@@ -62,15 +56,13 @@ namespace Viscoplastic
   };
 
 
-  /**
-   * P^T A P, the matrix of the same bilinear form on the coarser mesh, for the
-   * owned rows.
-   *
-   * @p nodes: the numbers of the owned fine nodes, ascending, and of the
-   * ghosts, ascending, among the columns of @p A; @p coarse_nodes: the owned
-   * coarse nodes, ascending; @p begins: the first node of each rank, and the
-   * end. Collective.
-   */
+  /// P^T A P, the matrix of the same bilinear form on the coarser mesh, for the
+  /// owned rows.
+  ///
+  /// @p nodes: the numbers of the owned fine nodes, ascending, and of the
+  /// ghosts, ascending, among the columns of @p A; @p coarse_nodes: the owned
+  /// coarse nodes, ascending; @p begins: the first node of each rank, and the
+  /// end. Collective.
   template <int dim>
   BlockRows<dim>
   galerkin_product(const BlockRows<dim>                   &A,

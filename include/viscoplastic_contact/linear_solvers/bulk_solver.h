@@ -9,10 +9,8 @@
 
 namespace Viscoplastic
 {
-  /**
-   * What an iterative solver has learnt from earlier solves with a matrix and
-   * uses in later ones: how its preconditioner was built, and how it is doing.
-   */
+  /// What an iterative solver has learnt from earlier solves with a matrix and
+  /// uses in later ones: how its preconditioner was built, and how it is doing.
   struct PreconditionerState
   {
     /// The truncation for which it was built.
@@ -25,12 +23,10 @@ namespace Viscoplastic
   };
 
 
-  /**
-   * Solves with the elastic matrix A, or a tangent, of one mesh, for any load,
-   * start, and truncation of the face. Keeps a factorization or a
-   * preconditioner, and nothing of the solves themselves. All calls are
-   * collective; vectors are in frames.
-   */
+  /// Solves with the elastic matrix A, or a tangent, of one mesh, for any load,
+  /// start, and truncation of the face. Keeps a factorization or a
+  /// preconditioner, and nothing of the solves themselves. All calls are
+  /// collective; vectors are in frames.
   class BulkSolver
   {
   public:
@@ -52,11 +48,9 @@ namespace Viscoplastic
       double       error;
     };
 
-    /**
-     * Solve a(u,v) = l(v) without contact. @p u brings the prescribed values
-     * and a start, and takes the solution up. Stops at the relative energy
-     * error @p tolerance. Throws ExcMessage.
-     */
+    /// Solve a(u,v) = l(v) without contact. @p u brings the prescribed values
+    /// and a start, and takes the solution up. Stops at the relative energy
+    /// error @p tolerance. Throws ExcMessage.
     virtual Report
     solve(const DistributedVector &load,
           DistributedVector       &u,
@@ -74,11 +68,9 @@ namespace Viscoplastic
     virtual const FaceMatrix &
     face_matrix() const = 0;
 
-    /**
-     * The matrix has other values in the same pattern: adapt. Returns false if
-     * @p matrix is another object or a new solver is as good; then this one is
-     * of no use any more.
-     */
+    /// The matrix has other values in the same pattern: adapt. Returns false if
+    /// @p matrix is another object or a new solver is as good; then this one is
+    /// of no use any more.
     virtual bool
     renew(const DistributedMatrix &matrix) = 0;
 

@@ -5,11 +5,9 @@
 
 namespace Viscoplastic
 {
-  /**
-   * What solves on the first level of a multigrid cycle, in Cartesian
-   * components, exactly or nearly: symmetric and positive definite on what is
-   * free. All calls are collective.
-   */
+  /// What solves on the first level of a multigrid cycle, in Cartesian
+  /// components, exactly or nearly: symmetric and positive definite on what is
+  /// free. All calls are collective.
   template <int dim>
   class CoarseSolver
   {

@@ -12,9 +12,8 @@
 
 namespace Viscoplastic
 {
-  /**
-   * A direct solver (UMFPACK) for a small first level. Each rank has all of it.
-   */
+  /// A direct solver (UMFPACK) for a small first level. Each rank has all of
+  /// it.
   template <int dim>
   class DirectCoarseSolver : public CoarseSolver<dim>
   {

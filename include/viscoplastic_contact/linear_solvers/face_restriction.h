@@ -10,11 +10,9 @@
 
 namespace Viscoplastic
 {
-  /**
-   * The restriction R of distributed vectors to the contact face, and its
-   * transpose. Each entry of a face vector is a degree of freedom that this
-   * rank owns, so that nothing but the constructor communicates.
-   */
+  /// The restriction R of distributed vectors to the contact face, and its
+  /// transpose. Each entry of a face vector is a degree of freedom that this
+  /// rank owns, so that nothing but the constructor communicates.
   class FaceRestriction
   {
   public:

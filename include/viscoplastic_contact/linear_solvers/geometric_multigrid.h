@@ -14,20 +14,18 @@
 
 namespace Viscoplastic
 {
-  /**
-   * A multigrid cycle on the nested meshes from which the mesh has come: one
-   * sweep of Gauss-Seidel by nodes before and after the correction by the mesh
-   * below. On the first mesh there is a direct solver or, where it is large,
-   * one cycle of smoothed aggregation between two sweeps.
-   *
-   * The matrices of coarser meshes are those of the same bilinear form on their
-   * spaces (Galerkin products), whatever the material. They know nothing of the
-   * truncation: LevelMasks do, and another truncation costs little. Multigrid
-   * on truncated spaces is that of Graeser and Kornhuber, J. Comput. Math. 27,
-   * 2009.
-   *
-   * The levels are in single precision, which is enough for a preconditioner.
-   */
+  /// A multigrid cycle on the nested meshes from which the mesh has come: one
+  /// sweep of Gauss-Seidel by nodes before and after the correction by the mesh
+  /// below. On the first mesh there is a direct solver or, where it is large,
+  /// one cycle of smoothed aggregation between two sweeps.
+  ///
+  /// The matrices of coarser meshes are those of the same bilinear form on
+  /// their spaces (Galerkin products), whatever the material. They know nothing
+  /// of the truncation: LevelMasks do, and another truncation costs little.
+  /// Multigrid on truncated spaces is that of Graeser and Kornhuber, J. Comput.
+  /// Math. 27, 2009.
+  ///
+  /// The levels are in single precision, which is enough for a preconditioner.
   template <int dim>
   class GeometricMultigrid : public Preconditioner
   {
@@ -43,11 +41,9 @@ namespace Viscoplastic
       unsigned int coarse_size = 100;
     };
 
-    /**
-     * @p excluded: owned degrees of freedom that are no unknowns;
-     * @p rigid_body_modes: on owned entries, zero where excluded, if the first
-     * level is too large for a direct solver; none otherwise. Collective.
-     */
+    /// @p excluded: owned degrees of freedom that are no unknowns;
+    /// @p rigid_body_modes: on owned entries, zero where excluded, if the first
+    /// level is too large for a direct solver; none otherwise. Collective.
     GeometricMultigrid(const DistributedMatrix              &matrix,
                        const std::vector<bool>              &excluded,
                        NodeHierarchy                         hierarchy,

@@ -10,13 +10,11 @@
 
 namespace Viscoplastic
 {
-  /**
-   * The interpolations of the unknowns between the meshes of a hierarchy, in
-   * Cartesian components. Apart from interfaces between bodies they are those
-   * of displacements. They are made from the last mesh down, since what lies
-   * opposite to a node of a coarse mesh is what lies there on the last mesh, by
-   * its coarse nodes: so the spaces stay nested. Calls are collective.
-   */
+  /// The interpolations of the unknowns between the meshes of a hierarchy, in
+  /// Cartesian components. Apart from interfaces between bodies they are those
+  /// of displacements. They are made from the last mesh down, since what lies
+  /// opposite to a node of a coarse mesh is what lies there on the last mesh,
+  /// by its coarse nodes: so the spaces stay nested. Calls are collective.
   class LevelInterpolations
   {
   public:

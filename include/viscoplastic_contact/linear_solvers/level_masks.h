@@ -32,16 +32,14 @@ namespace Viscoplastic
   }
 
 
-  /**
-   * What the levels of a multigrid cycle know of excluded degrees of freedom
-   * and of a truncation on the face: at the nodes concerned a projector onto
-   * what is free, and springs.
-   *
-   * Matrices know nothing of it. Residuals and corrections are zero in the
-   * directions that are cut off, and a coarse node sticks if at least 40 % of
-   * the weight of the face nodes around it does. So another truncation costs
-   * nothing but the inverse diagonal blocks of face nodes.
-   */
+  /// What the levels of a multigrid cycle know of excluded degrees of freedom
+  /// and of a truncation on the face: at the nodes concerned a projector onto
+  /// what is free, and springs.
+  ///
+  /// Matrices know nothing of it. Residuals and corrections are zero in the
+  /// directions that are cut off, and a coarse node sticks if at least 40 % of
+  /// the weight of the face nodes around it does. So another truncation costs
+  /// nothing but the inverse diagonal blocks of face nodes.
   template <int dim>
   class LevelMasks
   {

@@ -11,22 +11,18 @@
 
 namespace Viscoplastic
 {
-  /**
-   * A mesh of a hierarchy as multigrid works on it: the owned rows of its
-   * matrix and the interpolation from the mesh below, in single precision and
-   * Cartesian components. Nodes have local numbers, the owned ones first.
-   */
+  /// A mesh of a hierarchy as multigrid works on it: the owned rows of its
+  /// matrix and the interpolation from the mesh below, in single precision and
+  /// Cartesian components. Nodes have local numbers, the owned ones first.
   template <int dim>
   class MultigridLevel
   {
   public:
     using Vector = LinearAlgebra::distributed::Vector<float>;
 
-    /**
-     * @p nodes: the owned ones; @p begins: the first node of each rank in the
-     * last mesh, and the end; @p others: nodes of other ranks that vectors need
-     * besides those of the matrix. Collective.
-     */
+    /// @p nodes: the owned ones; @p begins: the first node of each rank in the
+    /// last mesh, and the end; @p others: nodes of other ranks that vectors
+    /// need besides those of the matrix. Collective.
     MultigridLevel(const BlockRows<dim>                   &matrix,
                    const std::vector<NodeHierarchy::Node> &nodes,
                    const std::vector<NodeHierarchy::Node> &others,

@@ -12,17 +12,15 @@ namespace Viscoplastic
 {
   using namespace dealii;
 
-  /**
-   * The nodes of the nested meshes from which a mesh has come by refinement:
-   * mesh l has the cells of level l and the active cells of lower levels, so
-   * the last one is the mesh itself. The nodes of mesh l-1 are nodes of mesh l,
-   * and hanging nodes hang in all meshes that have them, so that the spaces are
-   * nested, too.
-   *
-   * A node is known by its number in the last mesh on all levels, its first
-   * degree of freedom over their number at a node; the rank that owns it there
-   * owns it everywhere.
-   */
+  /// The nodes of the nested meshes from which a mesh has come by refinement:
+  /// mesh l has the cells of level l and the active cells of lower levels, so
+  /// the last one is the mesh itself. The nodes of mesh l-1 are nodes of mesh
+  /// l, and hanging nodes hang in all meshes that have them, so that the spaces
+  /// are nested, too.
+  ///
+  /// A node is known by its number in the last mesh on all levels, its first
+  /// degree of freedom over their number at a node; the rank that owns it there
+  /// owns it everywhere.
   struct NodeHierarchy
   {
     using Node = types::global_dof_index;

@@ -8,11 +8,9 @@
 
 namespace Viscoplastic
 {
-  /**
-   * What conjugate gradients take for the inverse of K + springs on the
-   * truncated space: symmetric and positive definite. Vectors are in nodal
-   * frames, on owned entries. All calls are collective.
-   */
+  /// What conjugate gradients take for the inverse of K + springs on the
+  /// truncated space: symmetric and positive definite. Vectors are in nodal
+  /// frames, on owned entries. All calls are collective.
   class Preconditioner
   {
   public:

@@ -5,11 +5,9 @@
 
 namespace Viscoplastic
 {
-  /**
-   * A block of a matrix in the registers of any processor: four numbers at a
-   * time, which are a row of a 3 x 3 block and zero, or both rows of a 2 x 2
-   * block.
-   */
+  /// A block of a matrix in the registers of any processor: four numbers at a
+  /// time, which are a row of a 3 x 3 block and zero, or both rows of a 2 x 2
+  /// block.
   template <int dim, typename Number>
   struct PackedBlock
   {
@@ -23,10 +21,8 @@ namespace Viscoplastic
   };
 
 
-  /**
-   * What products with rows of a matrix need, as plain pointers: see
-   * SharedRows.
-   */
+  /// What products with rows of a matrix need, as plain pointers: see
+  /// SharedRows.
   template <int dim, typename Number>
   struct RowTable
   {

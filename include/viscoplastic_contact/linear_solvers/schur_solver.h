@@ -11,24 +11,21 @@
 
 namespace Viscoplastic
 {
-  /**
-   * Direct solver on one rank: a sparse Cholesky factorization (CHOLMOD) with
-   * the face ordered last, K = L L^T. The last block of L then factorizes the
-   * Schur complement S = L_cc L_cc^T of the bulk on the face, so that a step is
-   *
-   *     one forward substitution, a dense problem on the face, one backward
-   *     substitution,
-   *
-   * that is one plain solve, whatever the active set does.
-   */
+  /// Direct solver on one rank: a sparse Cholesky factorization (CHOLMOD) with
+  /// the face ordered last, K = L L^T. The last block of L then factorizes the
+  /// Schur complement S = L_cc L_cc^T of the bulk on the face, so that a step
+  /// is
+  ///
+  ///     one forward substitution, a dense problem on the face, one backward
+  ///     substitution,
+  ///
+  /// that is one plain solve, whatever the active set does.
   class SchurSolver : public BulkSolver
   {
   public:
-    /**
-     * @p excluded: see AdmissibleSpace::excluded(); @p dim decides the fill
-     * reducing ordering. Throws ExcMessage if the matrix is not positive
-     * definite or memory is short.
-     */
+    /// @p excluded: see AdmissibleSpace::excluded(); @p dim decides the fill
+    /// reducing ordering. Throws ExcMessage if the matrix is not positive
+    /// definite or memory is short.
     SchurSolver(const DistributedMatrix &matrix,
                 const std::vector<bool> &excluded,
                 const FaceRestriction   &face,

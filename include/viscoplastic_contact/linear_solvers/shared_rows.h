@@ -11,14 +11,12 @@
 
 namespace Viscoplastic
 {
-  /**
-   * The rows of a matrix for products with vectors: those with the same values,
-   * of which uniform meshes have many, share them. What is read is what a
-   * product costs. Nodes have local numbers, the owned ones first.
-   *
-   * Values are rounded to what makes rows of equal cells equal: in single
-   * precision to its last digit but one, in double precision to ten digits.
-   */
+  /// The rows of a matrix for products with vectors: those with the same
+  /// values, of which uniform meshes have many, share them. What is read is
+  /// what a product costs. Nodes have local numbers, the owned ones first.
+  ///
+  /// Values are rounded to what makes rows of equal cells equal: in single
+  /// precision to its last digit but one, in double precision to ten digits.
   template <int dim, typename Number>
   class SharedRows
   {

@@ -13,20 +13,16 @@ namespace dealii::TrilinosWrappers
 
 namespace Viscoplastic
 {
-  /**
-   * A cycle of smoothed aggregation (Vanek, Mandel and Brezina, Computing 56,
-   * 1996; Trilinos' ML) for a symmetric positive definite matrix of elasticity:
-   * Chebyshev smoothers, a direct solver on the last level. The same matrix
-   * gives the same cycle, however many there were before.
-   */
+  /// A cycle of smoothed aggregation (Vanek, Mandel and Brezina, Computing 56,
+  /// 1996; Trilinos' ML) for a symmetric positive definite matrix of
+  /// elasticity: Chebyshev smoothers, a direct solver on the last level. The
+  /// same matrix gives the same cycle, however many there were before.
   class SmoothedAggregation
   {
   public:
-    /**
-     * @p near_null_space: what hardly has energy, rigid body modes, one after
-     * the other on owned entries, zero where the matrix has a row of its own;
-     * @p dim degrees of freedom a node. Collective.
-     */
+    /// @p near_null_space: what hardly has energy, rigid body modes, one after
+    /// the other on owned entries, zero where the matrix has a row of its own;
+    /// @p dim degrees of freedom a node. Collective.
     SmoothedAggregation(std::unique_ptr<DistributedMatrix> matrix,
                         std::vector<double>                near_null_space,
                         const unsigned int                 dim);

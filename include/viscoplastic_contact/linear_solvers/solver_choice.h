@@ -61,20 +61,16 @@ namespace Viscoplastic
     double set_up, step;
   };
 
-  /**
-   * What a solver is expected to cost: powers of the degrees of freedom,
-   * measured by benchmarks/step_cost.py and benchmarks/new_mesh.py. Only ratios
-   * mean anything on other machines and in other scenes.
-   */
+  /// What a solver is expected to cost: powers of the degrees of freedom,
+  /// measured by benchmarks/step_cost.py and benchmarks/new_mesh.py. Only
+  /// ratios mean anything on other machines and in other scenes.
   SolverCost
   expected_cost(const BulkSolverKind kind, const SolverDemand &demand);
 
 
-  /**
-   * Memory in bytes that matrix, solver and vectors take beyond mesh and
-   * spaces: fitted to measurements (doc/solvers.md), good to a factor of 1.5 or
-   * so.
-   */
+  /// Memory in bytes that matrix, solver and vectors take beyond mesh and
+  /// spaces: fitted to measurements (doc/solvers.md), good to a factor of 1.5
+  /// or so.
   double
   expected_memory(const BulkSolverKind kind, const SolverDemand &demand);
 } // namespace Viscoplastic

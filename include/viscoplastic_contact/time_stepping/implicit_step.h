@@ -7,24 +7,22 @@
 
 namespace Viscoplastic
 {
-  /**
-   * Backward Euler: z_n = z_{n-1} + k G(t_n, sigma_n, eps_n) and (3.20)
-   * together, by Newton's method for the bulk around the contact solver. In
-   * each iteration, z(eps) is replaced by its tangent C at the strain of an
-   * iterate m, or by one from before if that does as well, and friction is
-   * solved with that matrix:
-   *
-   *     a(u, v) + (z_m + C (eps(u) - eps(u_m)), eps(v)) + friction = L(v).
-   *
-   * With a potential this is one convex minimization, J(u) -> min, and a step
-   * along d = u - u_m is shortened where J' d = 0 if the whole one overshoots,
-   * which J' tells without J; then J decreases always. Without one, the same
-   * rule looks for a zero of the residual along d.
-   *
-   * The iteration ends when (u, z(eps(u))) satisfies the equations to the
-   * contact tolerance: what the tangent has missed, dz, is a residual whose
-   * dual norm is at most that of dz.
-   */
+  /// Backward Euler: z_n = z_{n-1} + k G(t_n, sigma_n, eps_n) and (3.20)
+  /// together, by Newton's method for the bulk around the contact solver. In
+  /// each iteration, z(eps) is replaced by its tangent C at the strain of an
+  /// iterate m, or by one from before if that does as well, and friction is
+  /// solved with that matrix:
+  ///
+  ///     a(u, v) + (z_m + C (eps(u) - eps(u_m)), eps(v)) + friction = L(v).
+  ///
+  /// With a potential this is one convex minimization, J(u) -> min, and a step
+  /// along d = u - u_m is shortened where J' d = 0 if the whole one overshoots,
+  /// which J' tells without J; then J decreases always. Without one, the same
+  /// rule looks for a zero of the residual along d.
+  ///
+  /// The iteration ends when (u, z(eps(u))) satisfies the equations to the
+  /// contact tolerance: what the tangent has missed, dz, is a residual whose
+  /// dual norm is at most that of dz.
   template <int dim>
   class ImplicitStep : public StepMethod<dim>
   {

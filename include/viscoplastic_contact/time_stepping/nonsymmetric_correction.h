@@ -26,23 +26,21 @@ namespace Viscoplastic
   };
 
 
-  /**
-   * Newton's method for the bulk and friction together where the tangents C of
-   * backward Euler are not symmetric, and a symmetric matrix misses a part of
-   * them. The contact solver has found, with that matrix, who sticks and who
-   * slips; with these sets, the correction w solves
-   *
-   *     P (a_C(.,.) + springs) P w = P r,
-   *
-   * where r is the exact residual with the forces of friction, P holds the
-   * sticking points, and the springs are the turning stiffness of slipping
-   * ones (see make_truncation()). GMRES, preconditioned by the solver of the
-   * symmetric matrix; C itself is applied cell by cell and makes no matrix.
-   *
-   * A correction is taken as far as it decreases the exact residual in the
-   * dual norm of the matrix, with slips that would reverse stopped, or not at
-   * all. Keeps nothing from one call to the next.
-   */
+  /// Newton's method for the bulk and friction together where the tangents C of
+  /// backward Euler are not symmetric, and a symmetric matrix misses a part of
+  /// them. The contact solver has found, with that matrix, who sticks and who
+  /// slips; with these sets, the correction w solves
+  ///
+  ///     P (a_C(.,.) + springs) P w = P r,
+  ///
+  /// where r is the exact residual with the forces of friction, P holds the
+  /// sticking points, and the springs are the turning stiffness of slipping
+  /// ones (see make_truncation()). GMRES, preconditioned by the solver of the
+  /// symmetric matrix; C itself is applied cell by cell and makes no matrix.
+  ///
+  /// A correction is taken as far as it decreases the exact residual in the
+  /// dual norm of the matrix, with slips that would reverse stopped, or not at
+  /// all. Keeps nothing from one call to the next.
   template <int dim>
   class NonsymmetricCorrection
   {

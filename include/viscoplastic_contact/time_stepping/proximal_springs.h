@@ -10,13 +10,12 @@
 
 namespace Viscoplastic
 {
-  /**
-   * The proximal point method for bodies that only contact holds, whose matrix
-   * is singular: weak springs tie the contact nodes to where they are, the step
-   * is solved, and this is repeated from the solution until the springs carry
-   * nothing. Between two solves the body settles as a whole where contact
-   * balances its loads. Whether it can, statics says before the first solve.
-   */
+  /// The proximal point method for bodies that only contact holds, whose matrix
+  /// is singular: weak springs tie the contact nodes to where they are, the
+  /// step is solved, and this is repeated from the solution until the springs
+  /// carry nothing. Between two solves the body settles as a whole where
+  /// contact balances its loads. Whether it can, statics says before the first
+  /// solve.
   template <int dim>
   class ProximalSprings
   {
@@ -31,12 +30,10 @@ namespace Viscoplastic
     void
     add_load(const DistributedVector &u, DistributedVector &load) const;
 
-    /**
-     * The bounds of friction with which a step is solved: @p bounds, raised
-     * where bounds that follow the pressure could hold the body but these
-     * cannot. Throws ExcMessage where no contact force balances the loads.
-     * Collective.
-     */
+    /// The bounds of friction with which a step is solved: @p bounds, raised
+    /// where bounds that follow the pressure could hold the body but these
+    /// cannot. Throws ExcMessage where no contact force balances the loads.
+    /// Collective.
     std::vector<double>
     bounds_that_hold(const StepProblem<dim>    &problem,
                      const std::vector<double> &bounds) const;
@@ -47,10 +44,8 @@ namespace Viscoplastic
                                               const DistributedVector &,
                                               const double)>;
 
-    /**
-     * Solve the step of @p problem by repeated calls of @p solve, which change
-     * @p u and @p contact. Throws ExcMessage. Collective.
-     */
+    /// Solve the step of @p problem by repeated calls of @p solve, which change
+    /// @p u and @p contact. Throws ExcMessage. Collective.
     ContactReport
     solve(const StepProblem<dim>  &problem,
           const DistributedVector &right_side,
@@ -82,13 +77,11 @@ namespace Viscoplastic
     double
     norm(const DistributedVector &u) const;
 
-    /**
-     * How many times as far the springs' rest should go as the last solve has
-     * moved the body away from it, by what the last two have taught: the step
-     * of Barzilai & Borwein (IMA J. Numer. Anal. 8, 1988) for the minimum of
-     * the energy with springs, whose gradient is what they carry. With a
-     * single motion it is the rule of the secant. Collective.
-     */
+    /// How many times as far the springs' rest should go as the last solve has
+    /// moved the body away from it, by what the last two have taught: the step
+    /// of Barzilai & Borwein (IMA J. Numer. Anal. 8, 1988) for the minimum of
+    /// the energy with springs, whose gradient is what they carry. With a
+    /// single motion it is the rule of the secant. Collective.
     double
     learned_step(const DistributedVector &last_center,
                  const DistributedVector &center,

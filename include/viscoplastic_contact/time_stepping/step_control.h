@@ -29,9 +29,7 @@ namespace Viscoplastic
   };
 
 
-  /**
-   * What a step that has been tried is judged by.
-   */
+  /// What a step that has been tried is judged by.
   struct StepErrors
   {
     /// What the step adds to the error of the time integration, in the energy
@@ -56,37 +54,35 @@ namespace Viscoplastic
   };
 
 
-  /**
-   * Chooses the time steps: those of the phases; shorter ones where stability
-   * asks for it; or steps by their error. What it knows of the run is here, so
-   * that a step itself is a function of the accepted state, the time and the
-   * step size alone.
-   *
-   * With `Step control/Tolerance' = TOL, a step is accepted if its contribution
-   * d to the time error (ErrorEstimate::time_indicator) satisfies
-   *
-   *     d <= TOL max(size k/T, change),
-   *
-   * with the largest energy norm of the run so far as size and the end time T.
-   * The sum over the run is then at most TOL times the size of the solution
-   * plus the length of its path. An absolute bound would not do: a solution
-   * that starts from zero has no size yet. The next step follows from the error
-   * ratios of the last two by a proportional-integral controller (Gustafsson;
-   * Hairer and Wanner II, IV.2), whose exponents are those of the order p in
-   * which that ratio depends on k.
-   *
-   * In a run to a tolerance, of which TOL is the part of the time steps, the
-   * signed sum of all contributions has to stay below TOL size. With D what it
-   * has come to, a step may use of the rest TOL size - D what it covers of the
-   * remaining time or of the change of the solution,
-   *
-   *     d <= (TOL size - D) min(1, max(k/(T - t), change/size)/c),
-   *
-   * with c <= 1 the ratio of the signed to the unsigned sum up to now, or D to
-   * TOL size if that is larger: where contributions cancel, each of them may be
-   * larger, but the less the nearer the sum is to its bound. A rest of 0.05 of
-   * the bound is always there, so that steps do not become ever smaller.
-   */
+  /// Chooses the time steps: those of the phases; shorter ones where stability
+  /// asks for it; or steps by their error. What it knows of the run is here, so
+  /// that a step itself is a function of the accepted state, the time and the
+  /// step size alone.
+  ///
+  /// With `Step control/Tolerance' = TOL, a step is accepted if its
+  /// contribution d to the time error (ErrorEstimate::time_indicator) satisfies
+  ///
+  ///     d <= TOL max(size k/T, change),
+  ///
+  /// with the largest energy norm of the run so far as size and the end time T.
+  /// The sum over the run is then at most TOL times the size of the solution
+  /// plus the length of its path. An absolute bound would not do: a solution
+  /// that starts from zero has no size yet. The next step follows from the
+  /// error ratios of the last two by a proportional-integral controller
+  /// (Gustafsson; Hairer and Wanner II, IV.2), whose exponents are those of the
+  /// order p in which that ratio depends on k.
+  ///
+  /// In a run to a tolerance, of which TOL is the part of the time steps, the
+  /// signed sum of all contributions has to stay below TOL size. With D what it
+  /// has come to, a step may use of the rest TOL size - D what it covers of the
+  /// remaining time or of the change of the solution,
+  ///
+  ///     d <= (TOL size - D) min(1, max(k/(T - t), change/size)/c),
+  ///
+  /// with c <= 1 the ratio of the signed to the unsigned sum up to now, or D to
+  /// TOL size if that is larger: where contributions cancel, each of them may
+  /// be larger, but the less the nearer the sum is to its bound. A rest of 0.05
+  /// of the bound is always there, so that steps do not become ever smaller.
   class StepControl
   {
   public:

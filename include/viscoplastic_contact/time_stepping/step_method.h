@@ -13,12 +13,10 @@
 
 namespace Viscoplastic
 {
-  /**
-   * A scheme for one step, on one mesh. A step is a function of its problem
-   * alone, up to what an iterative linear solver has learnt from earlier solves
-   * (PreconditionerState): with that restored, the same problem gives the same
-   * bits.
-   */
+  /// A scheme for one step, on one mesh. A step is a function of its problem
+  /// alone, up to what an iterative linear solver has learnt from earlier
+  /// solves (PreconditionerState): with that restored, the same problem gives
+  /// the same bits.
   template <int dim>
   class StepMethod
   {
@@ -66,11 +64,10 @@ namespace Viscoplastic
 
 
 
-  /**
-   * The scheme that a scene asks for: explicit, implicit, or explicit up to the
-   * stability limit and implicit beyond it. @p discretization has its matrix;
-   * it and @p timer, which gets the seconds by phase, stay in use. Collective.
-   */
+  /// The scheme that a scene asks for: explicit, implicit, or explicit up to
+  /// the stability limit and implicit beyond it. @p discretization has its
+  /// matrix; it and @p timer, which gets the seconds by phase, stay in use.
+  /// Collective.
   template <int dim>
   std::unique_ptr<StepMethod<dim>>
   make_step_method(const Discretization<dim> &discretization,

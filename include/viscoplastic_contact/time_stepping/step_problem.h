@@ -15,14 +15,12 @@
 
 namespace Viscoplastic
 {
-  /**
-   * The data of one step from t_{n-1} to t_n: what (3.20) is made of besides
-   * the form a(.,.) and the irreversible stress z_n. In total form, with
-   * Delta u = u_n - u_{n-1}:
-   *
-   *     a(u_n, v - Delta u) + (z_n, eps(v - Delta u)) + j_n(v) - j_n(Delta u)
-   *       >= L(t_n; v - Delta u)   for all admissible v.
-   */
+  /// The data of one step from t_{n-1} to t_n: what (3.20) is made of besides
+  /// the form a(.,.) and the irreversible stress z_n. In total form, with
+  /// Delta u = u_n - u_{n-1}:
+  ///
+  ///     a(u_n, v - Delta u) + (z_n, eps(v - Delta u)) + j_n(v) - j_n(Delta u)
+  ///       >= L(t_n; v - Delta u)   for all admissible v.
   template <int dim>
   struct StepProblem
   {

@@ -11,11 +11,9 @@
 
 namespace Viscoplastic
 {
-  /**
-   * Solves the variational inequality (3.20) of a step for u_n, the friction
-   * multipliers and the sets, with a given matrix: that of a(.,.), or of a
-   * tangent. Owns the linear solver for that matrix.
-   */
+  /// Solves the variational inequality (3.20) of a step for u_n, the friction
+  /// multipliers and the sets, with a given matrix: that of a(.,.), or of a
+  /// tangent. Owns the linear solver for that matrix.
   template <int dim>
   class StepSolver
   {
@@ -54,23 +52,19 @@ namespace Viscoplastic
       return *bulk_solver;
     }
 
-    /**
-     * Where to start: u in frames, from the last displacement and what @p guess
-     * says of velocities and sets, and these sets in @p contact.
-     */
+    /// Where to start: u in frames, from the last displacement and what @p
+    /// guess says of velocities and sets, and these sets in @p contact.
     DistributedVector
     initial_guess(const StepProblem<dim> &problem,
                   const State<dim>       &guess,
                   ContactState           &contact) const;
 
-    /**
-     * Solve from @p u and @p contact, which take the solution up.
-     * @p right_side is the load of the problem less what does not depend on u;
-     * @p tolerance is relative. Where Coulomb's law takes the pressure of the
-     * step itself, it is solved with the step (CoulombLaw), or the fixed point
-     * p of p -> p(rho = mu p) is found by solving again, as the scene says.
-     * Throws ExcMessage. Collective.
-     */
+    /// Solve from @p u and @p contact, which take the solution up.
+    /// @p right_side is the load of the problem less what does not depend on u;
+    /// @p tolerance is relative. Where Coulomb's law takes the pressure of the
+    /// step itself, it is solved with the step (CoulombLaw), or the fixed point
+    /// p of p -> p(rho = mu p) is found by solving again, as the scene says.
+    /// Throws ExcMessage. Collective.
     ContactReport
     solve(const StepProblem<dim>  &problem,
           const DistributedVector &right_side,
@@ -78,12 +72,10 @@ namespace Viscoplastic
           DistributedVector       &u,
           ContactState            &contact);
 
-    /**
-     * Move @p u, in frames, into equilibrium with @p right_side while all
-     * points with friction, and those that touch an obstacle, stay where they
-     * are. One linear solve to the
-     * relative error @p tolerance. Throws ExcMessage. Collective.
-     */
+    /// Move @p u, in frames, into equilibrium with @p right_side while all
+    /// points with friction, and those that touch an obstacle, stay where they
+    /// are. One linear solve to the
+    /// relative error @p tolerance. Throws ExcMessage. Collective.
     void
     solve_with_held_friction(const DistributedVector &right_side,
                              const double             tolerance,

@@ -9,9 +9,7 @@
 
 namespace Viscoplastic
 {
-  /**
-   * A step that will do, with all that was learnt about it.
-   */
+  /// A step that will do, with all that was learnt about it.
   template <int dim>
   struct AcceptedStep : public StepOutcome
   {
@@ -39,12 +37,10 @@ namespace Viscoplastic
 
 
 
-  /**
-   * Makes the steps of a run on one mesh: proposes a step, tries it, judges it,
-   * and tries a shorter one until one will do. A step that is tried changes
-   * neither the state that it starts from nor anything here; what it leaves in
-   * an iterative linear solver is undone when it is rejected.
-   */
+  /// Makes the steps of a run on one mesh: proposes a step, tries it, judges
+  /// it, and tries a shorter one until one will do. A step that is tried
+  /// changes neither the state that it starts from nor anything here; what it
+  /// leaves in an iterative linear solver is undone when it is rejected.
   template <int dim>
   class TimeStepper
   {
@@ -72,12 +68,10 @@ namespace Viscoplastic
     ContactReport
     equilibrate(EvaluatedState<dim> &initial);
 
-    /**
-     * Bring a state that came from another mesh into equilibrium with the
-     * loads at its time; points with friction stay where they are, and the next
-     * step lets them slip. A displacement that is only interpolated would flow,
-     * and store energy, by stresses that nothing balances. Collective.
-     */
+    /// Bring a state that came from another mesh into equilibrium with the
+    /// loads at its time; points with friction stay where they are, and the
+    /// next step lets them slip. A displacement that is only interpolated would
+    /// flow, and store energy, by stresses that nothing balances. Collective.
     void
     settle(EvaluatedState<dim> &carried);
 

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <deal.II/base/exceptions.h>
 #include <deal.II/base/mpi.h>
-#include <deal.II/base/utilities.h>
 
 #include <viscoplastic_contact/base/files.h>
 #include <viscoplastic_contact/mesh/files/mesh_converter.h>

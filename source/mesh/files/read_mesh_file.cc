@@ -6,7 +6,6 @@
 #include <viscoplastic_contact/mesh/files/mesh_reader.h>
 #include <viscoplastic_contact/mesh/files/read_mesh_file.h>
 
-#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <iterator>

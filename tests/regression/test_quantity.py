@@ -686,6 +686,66 @@ class EachKind(TestCase):
         self.check("friction_dissipation", 0.7, 3, **held)
 
 
+class BetweenTwoPlanes(TestCase):
+    """A ring that is squeezed between two rough planes, whose forces cancel."""
+
+    SEAL = {
+        **POINTS,
+        "Geometry/Plane model": "axisymmetric",
+        "Geometry/Arguments": "4, 4 : 20, 0 : 25, 5 : true",
+        "Material/Young's modulus": 12,
+        "Material/Poisson's ratio": 0.4,
+        "Boundary 0/Role": "free",
+        "Boundary 1/Role": "free",
+        **{
+            f"Boundary {side}/{entry}": value
+            for side in (2, 3)
+            for entry, value in (
+                ("Role", "contact"),
+                ("Contact law", "unilateral"),
+                ("Friction law", "coulomb"),
+                ("Friction coefficient", 0.2),
+            )
+        },
+        "Boundary 3/Name": "top",
+        "Boundary 3/Gap": "-0.2*t",
+        "Time/Phases": "1: 4",
+        "Output/Fields every": 0,
+    }
+
+    def test_of_one_plane(self):
+        fine = {**self.SEAL, "Geometry/Global refinements": 3}
+        fine = run("seal", fine, text="")
+        for quantity, column in (
+            ("contact_force_y of top", "contact_force_3_y"),
+            ("friction_force_2_x", "friction_force_2_x"),
+        ):
+            with self.subTest(quantity):
+                coarse = run("seal", {**self.SEAL, **of(quantity)}, text="")
+                error = fine[column][-1] - coarse[column][-1]
+                quotient = coarse["quantity_space"][-1] / abs(error)
+                self.assertGreater(quotient, 0.7)
+                self.assertLess(quotient, 3)
+                kept = run("seal", {**self.SEAL, **of(quantity, 0.02)}, text="")
+                self.assertIn("has been kept", kept.stdout)
+                self.assertClose(kept[column][-1], fine[column][-1], 0.02)
+
+    def test_of_the_work_of_friction(self):
+        """Which has n of the n (n + 1) halves of steps too much; a note tells."""
+        for steps, is_told in (4, True), (16, False):
+            seal = {**self.SEAL, "Time/Phases": f"1: {steps}"}
+            words = run("seal", seal, text="").stdout
+            sentence = "Note: the energy balance is missing 20 % of the friction"
+            (self.assertIn if is_told else self.assertNotIn)(sentence, words)
+        self.assertNotIn("energy balance is missing", words)
+
+    def test_of_both(self):
+        """Nothing but rounding, of which no part can be kept."""
+        result = run("seal", {**self.SEAL, **of("contact_force_y", 0.02)}, text="")
+        self.assertIn("'contact_force_y' is zero throughout", result.stdout)
+        self.assertNotIn("has been kept", result.stdout)
+
+
 class OnTheBoundary(TestCase):
     """What a mesh misses on the boundary is known, though no residual feels it."""
 

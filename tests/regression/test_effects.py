@@ -4,6 +4,7 @@ the verdict is the right one."""
 
 import contextlib
 import csv
+import dataclasses
 import io
 import json
 import re
@@ -559,14 +560,17 @@ class Effects(TestCase):
             )
             self.assertTrue(study.compute_scene(0))
             (never,) = (v for v in effect_variants(study.scene, 1.0, "") if v.is_extreme)
-            for limits, failure in (
-                ({"MOST_TIMES": 1e-3, "LEAST_LIMIT": 0}, "not computed: it takes more"),
-                ({}, "no number"),
+            wrong = dataclasses.replace(
+                never, effect="other", overrides=["Boundary 2/Friction bound=no number"]
+            )
+            for variant, least, failure in (
+                (never, 0.0, "not computed: it takes more"),
+                (wrong, 10.0, "no number"),
             ):
-                if not limits:
-                    never.overrides = ["Boundary 2/Friction bound=no number"]
-                with unittest.mock.patch.multiple(effects, **limits):
-                    result, _ = study.compare(never, 0)
+                with unittest.mock.patch.multiple(
+                    effects, MOST_TIMES=1e-3, LEAST_LIMIT=least
+                ):
+                    result, _ = study.compare(variant, 0)
                 self.assertIn(failure, result.failure)
                 self.assertEqual(result.verdict, "could not be computed")
 

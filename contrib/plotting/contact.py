@@ -268,8 +268,12 @@ def draw_planes(contact, body, scale):
     # Rows of panels for each plane: of friction, and of what acts along the normal.
     rows = [["slip", "traction", "states"] if friction else ["slip"]]
     if is_unilateral(contact):
-        rows = [["contact_pressure", "gap"], ["slip", "states"], ["traction"]]
-        rows = rows if friction else [[*rows[0], "slip"]]
+        normal = ["contact_pressure", *(["gap"] if scale.has_gap() else [])]
+        rows = [normal, ["slip", "states"], ["traction"]]
+        if not friction:
+            rows = [[*normal, "slip"]]
+        elif len(normal) == 1:
+            rows = [[*normal, "traction"], ["slip", "states"]]
     columns = max(map(len, rows))
     aspect = shown[0].aspect()
     if shown[0].is_flat():

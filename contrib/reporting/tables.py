@@ -188,5 +188,10 @@ def balances(results, units):
         if size > 0.0:
             share = plain_number(100.0 * abs(defect[-1]) / size, 2)
             text += f", {share} % of the largest energy or work"
-        lines.append(text + "; it goes to zero with the time steps")
+        text += "; it goes to zero with the time steps"
+        if "construction_energy" in statistics:
+            text += (
+                ", but for what slips or opens at once where materials come or go"
+            )
+        lines.append(text)
     return items(lines) if lines else "<p>The run has left no balances.</p>\n"

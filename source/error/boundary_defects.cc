@@ -255,7 +255,8 @@ namespace Viscoplastic
           missing *= std::abs(at_node(density) * node.normal);
         if (quantity.is_sum())
           missing *= held.norm();
-        else if (quantity.kind == QuantityOfInterest::Kind::friction_force)
+        else if (quantity.kind == QuantityOfInterest::Kind::friction_force &&
+                 quantity.is_of(condition.id))
           missing *= std::abs(held[quantity.component]) / held.norm();
         else
           missing *= (node.held * at_node(w)).norm();

@@ -111,10 +111,10 @@ namespace Viscoplastic
           if (quantity.kind == Kind::reaction && id == quantity.number)
             own = held(condition, direction, nu);
           else if (quantity.kind == Kind::friction_force &&
-                   condition.has_friction())
+                   condition.has_friction() && quantity.is_of(id))
             own = along;
           else if (quantity.kind == Kind::contact_force &&
-                   condition.is_unilateral())
+                   condition.is_unilateral() && quantity.is_of(id))
             own = direction - along;
           for (const unsigned int v : cell->vertex_indices())
             {
@@ -213,9 +213,17 @@ namespace Viscoplastic
       {
         case QuantityOfInterest::Kind::friction_force:
         case QuantityOfInterest::Kind::contact_force:
-          return discretization.face->resultant(
-            state.contact,
-            quantity.kind == QuantityOfInterest::Kind::contact_force)[d];
+          {
+            const bool is_contact =
+              quantity.kind == QuantityOfInterest::Kind::contact_force;
+            if (quantity.number == QuantityOfInterest::all)
+              return discretization.face->resultant(state.contact,
+                                                    is_contact)[d];
+            const auto forces_of =
+              discretization.face->forces_by_boundary(state.contact)
+                .at(quantity.number);
+            return (is_contact ? forces_of.contact : forces_of.friction)[d];
+          }
         case QuantityOfInterest::Kind::friction_dissipation:
           {
             const ContactState  &contact = state.contact;
@@ -239,6 +247,27 @@ namespace Viscoplastic
                            discretization.space.axial_strain(u.begin());
           }
       }
+  }
+
+
+
+  template <int dim>
+  double
+  DualProblem<dim>::size_of_parts(const State<dim>  &state,
+                                  const Forces<dim> &forces) const
+  {
+    double sum = 0.;
+    if (quantity.kind == QuantityOfInterest::Kind::reaction)
+      {
+        const DistributedVector w = prescribed();
+        for (std::size_t i = 0; i < w.locally_owned_size(); ++i)
+          sum += std::abs(w.begin()[i] * (forces.internal.begin()[i] -
+                                          forces.load.values.begin()[i]));
+      }
+    else if (quantity.is_force() && discretization.face)
+      for (const Tensor<1, 2> &multiplier : state.contact.multiplier)
+        sum += multiplier.norm();
+    return Utilities::MPI::sum(sum, discretization.space.communicator);
   }
 
 
@@ -318,20 +347,36 @@ namespace Viscoplastic
               at_boundary.begin()[first + d] = in_frame[d];
           }
         Vector<double> on_face = face->restriction().gather(at_boundary);
-        // Along obstacles there is no friction, and contact only there.
+        // Along obstacles there is no friction, and contact only there. Of one
+        // boundary, a force is no more than its part of that at its nodes.
         const ContactLayout &layout = face->layout();
+        const auto           share  = [&](const unsigned int p) {
+          return quantity.number == QuantityOfInterest::all ?
+                              1. :
+                              face->area_share(quantity.number, p);
+        };
         for (unsigned int n = 0; n < layout.n_nodes(); ++n)
           {
-            const Tensor<1, 3> all  = layout.node_values(on_face, n);
-            Tensor<1, 3>       rest = all;
-            for (unsigned int p = layout.first_obstacle(n);
-                 p < layout.first_point[n + 1];
+            Tensor<1, 3> rest = layout.node_values(on_face, n), contact,
+                         friction;
+            const auto take = [&](const Tensor<1, 3> &along) {
+              const Tensor<1, 3> part =
+                (along * rest) / along.norm_square() * along;
+              rest -= part;
+              return part;
+            };
+            const unsigned int first          = layout.first_point[n],
+                               first_obstacle = layout.first_obstacle(n);
+            for (unsigned int p = first_obstacle; p < layout.first_point[n + 1];
                  ++p)
-              {
-                const Tensor<1, 3> &normal = layout.points[p].map[0];
-                rest -= (normal * rest) / normal.norm_square() * normal;
-              }
-            layout.set_node_values(is_contact_force ? all - rest : rest,
+              contact += share(p) * take(layout.points[p].map[0]);
+            // Of several points at an edge, each along its own directions.
+            for (unsigned int p = first; p + 1 < first_obstacle; ++p)
+              for (unsigned int i = 0; i < layout.points[p].n_tangents; ++i)
+                friction += share(p) * take(layout.points[p].map[i]);
+            if (first < first_obstacle)
+              friction += share(first_obstacle - 1) * rest;
+            layout.set_node_values(is_contact_force ? contact : friction,
                                    n,
                                    on_face);
           }

@@ -272,6 +272,13 @@ namespace Viscoplastic
     const CoulombLaw *const         linearized = law ? &*law : nullptr;
     const DualSolution<dim>         dual =
       dual_problem.solve(solver, state.contact, linearized);
+    // |J| <= a(w, w)^{1/2} a(u, u)^{1/2}; of a force that statics fixes w is a
+    // rigid motion.
+    if (!is_sum &&
+        std::abs(estimate.value) <
+          nothing * std::max(dual.norm * errors.energy_norm,
+                             dual_problem.size_of_parts(state, end.forces)))
+      estimate.value = 0.;
     const auto size_of = [&](const Vector<double> &parts) {
       if (parts.size() == 0) // on all ranks
         return 0.;

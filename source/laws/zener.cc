@@ -230,8 +230,16 @@ namespace Viscoplastic
                 << " with Poisson's ratio " << point.parameters[poissons_ratio]
                 << " makes the body stiffer in the long term than at once, at "
                    "x = ("
-                << point.x << "): the smallest eigenvalue of E - E_inf is "
-                << smallest << "; it must be zero or positive.";
+                << point.x << "): ";
+        const double modulus =
+          2. * (1. + stiffness.poissons_ratio()) * stiffness.shear_modulus();
+        if (stiffness.is_isotropic() &&
+            modulus < point.parameters[youngs_modulus])
+          message << "Young's modulus is " << modulus
+                  << "; it must not be below the long-term one.";
+        else
+          message << "the smallest eigenvalue of E - E_inf is " << smallest
+                  << "; it must be zero or positive.";
         AssertThrow(false, ExcMessage(message.str()));
       }
 

@@ -275,10 +275,28 @@ namespace Viscoplastic
         result.push_back(text.str());
       }
 
+    // What is missing is the work of friction, see EnergyBalance.
+    if (const double missing = std::abs(balance.defect()),
+        friction             = balance.friction_dissipation();
+        run.has_friction && !scene.has_stages() && missing > 0.1 * friction &&
+        missing > 1e-3 * balance.scale())
+      {
+        std::ostringstream text;
+        text
+          << std::setprecision(2) << "Note: the energy balance is missing "
+          << 100. * missing / friction
+          << " % of the friction dissipation, which may be wrong by about that: "
+             "it takes the friction at the ends of steps, which changes "
+             "within them; shorter steps mend this, which 'Error "
+             "control/Quantity' = friction_dissipation chooses.";
+        result.push_back(text.str());
+      }
+
     if (run.has_zero_quantity())
-      result.push_back("Warning: '" + scene.quantity->name +
-                       "' is zero throughout; no tolerance relative to it "
-                       "means anything.");
+      result.push_back("Warning: '" +
+                       scene.names.quantity(scene.quantity->name) +
+                       "' is zero throughout, but for rounding; no tolerance "
+                       "relative to it means anything.");
     else if (budget && run.controlled_errors().relative() > budget->tolerance)
       result.push_back(remark_on_tolerance());
 

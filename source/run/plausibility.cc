@@ -155,6 +155,17 @@ namespace Viscoplastic
           times.push_back(scene.schedule.step(std::min(i, n)).t);
       }
 
+      /// The least of a datum and zero.
+      double
+      least(const Expression<dim> &datum) const
+      {
+        double result = 0.;
+        for (const double t : times)
+          for (const double value : values_at(datum, places, t))
+            result = std::min(result, value);
+        return result;
+      }
+
       /// @p when: the first time of it.
       double
       largest(const Expression<dim> &datum, double *const when = nullptr) const
@@ -359,15 +370,27 @@ namespace Viscoplastic
     const double size =
       body_diagonal(discretization.space.dof_handler.get_triangulation());
     for (const auto &[id, condition] : scene.boundary)
-      if (condition.against && condition.is_unilateral())
-        if (const double overlap =
-              largest_overlap(discretization.space, condition);
-            overlap > 0.05 * size)
+      {
+        if (!condition.is_unilateral() ||
+            !(condition.against || condition.given_gap))
+          continue;
+        const double overlap =
+          condition.against ?
+            largest_overlap(discretization.space, condition) :
+            -DataSampler<dim>(
+               places_on_boundary(
+                 discretization.space.dof_handler.get_triangulation(), id),
+               scene)
+               .least(*condition.given_gap);
+        if (overlap > 0.05 * size)
           result.push_back(
-            scene.names.of("boundary", id) + " overlaps the other body by " +
+            scene.names.of("boundary", id) + " overlaps the " +
+            (condition.against ? "other body" : "foundation") + " by " +
             number(overlap) + units.suffix(Quantity::length, dim) + ", " +
-            number(std::round(100. * overlap / size)) +
-            " % of the size of both; small strains are assumed.");
+            number(std::round(100. * overlap / size)) + " % of the size of " +
+            (condition.against ? "both" : "the body") +
+            "; small strains are assumed.");
+      }
     if (!units.are_declared())
       return result;
 

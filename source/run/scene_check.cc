@@ -76,25 +76,39 @@ namespace Viscoplastic
     }
 
 
-    /// Evaluate the data of later times, of at most a hundred steps.
+    /// Evaluate the data of later times: at the ends of phases, and a hundred
+    /// times in between; where steps are fewer, at their ends among these.
     template <int dim>
     void
     check_later_data(const Discretization<dim> &discretization)
     {
-      const TimeSchedule &schedule = discretization.scene().schedule;
-      const unsigned int  n_steps  = schedule.n_steps(),
-                         stride    = (n_steps + 99) / 100;
-      DistributedVector u          = discretization.space.owned_vector();
-      for (unsigned int i = 1; i < n_steps + stride; i += stride)
+      const TimeSchedule &schedule  = discretization.scene().schedule;
+      const unsigned int  per_phase = std::max(1u, 100u / schedule.n_phases());
+      DistributedVector   u         = discretization.space.owned_vector();
+      double              t_old     = 0.;
+      while (t_old < schedule.end_time())
         {
-          const TimeStep step = schedule.step(std::min(i, n_steps));
-          discretization.loads.assemble(step.t);
-          discretization.space.set_prescribed(step.t, u);
-          discretization.laws.check(step.t);
-          if (discretization.face)
+          const TimeSchedule::Phase &phase = schedule.phase_at(t_old);
+          const unsigned int n_steps       = std::min(phase.n_steps, per_phase),
+                             n = n_steps * ((per_phase - 1) / n_steps + 1);
+          for (unsigned int i = 1; i <= n; ++i)
             {
-              discretization.face->bounds(step.t);
-              discretization.face->foundation_step(step.t_old, step.t);
+              const double t =
+                i == n ? phase.end :
+                         phase.start + (phase.end - phase.start) * i / n;
+              discretization.loads.assemble(t);
+              discretization.space.set_prescribed(t, u);
+              discretization.laws.check(t);
+              if (discretization.face)
+                {
+                  // Coefficients of friction without their pressures.
+                  std::vector<double> bounds = discretization.face->bounds(t);
+                  discretization.face->add_computed_bounds(t,
+                                                           ContactState(),
+                                                           bounds);
+                  discretization.face->foundation_step(t_old, t);
+                }
+              t_old = t;
             }
         }
     }

@@ -250,6 +250,15 @@ namespace Viscoplastic
                                                     *solution) :
                             given_components<dim>(parameters.displacement,
                                                   entry(id, "Displacement"));
+        AssertThrow(!has_displacement || std::any_of(components.begin(),
+                                                     components.end(),
+                                                     [](const auto &one) {
+                                                       return one.has_value();
+                                                     }),
+                    ExcMessage("'" + entry(id, "Displacement") +
+                               "' prescribes nothing; a boundary that is free "
+                               "in all directions has the role free, or "
+                               "traction with a load or springs."));
         if (has_displacement)
           displacement = std::move(components);
       }

@@ -151,12 +151,12 @@ namespace Viscoplastic
   {
     std::smatch             match;
     static const std::regex of_place(
-      "(reaction|displacement)_([xyz]) +of +(.+)");
+      "(reaction|friction_force|contact_force|displacement)_([xyz]) +of +(.+)");
     if (!std::regex_match(quantity, match, of_place))
       return quantity;
     const std::string what = match[1], component = match[2], name = match[3];
     const auto        place = find(name);
-    const std::string kind  = what == "reaction" ? "boundary" : "point";
+    const std::string kind  = what == "displacement" ? "point" : "boundary";
     if (!place || place->kind != kind)
       {
         std::vector<std::string> known;
@@ -170,7 +170,7 @@ namespace Viscoplastic
                       "': there is no " + kind + " '" + excerpt(name) + "'" +
                       (near.empty() ? "." : "; did you mean '" + near + "'?")));
       }
-    return (kind == "boundary" ? "reaction_" : "point") +
+    return (kind == "boundary" ? what + '_' : kind) +
            std::to_string(place->number) + '_' + component;
   }
 
@@ -180,13 +180,14 @@ namespace Viscoplastic
   PlaceNames::quantity(const std::string &column) const
   {
     std::smatch             match;
-    static const std::regex of_place("(reaction_|point)(\\d+)_([xyz])");
+    static const std::regex of_place(
+      "(reaction_|friction_force_|contact_force_|point)(\\d+)_([xyz])");
     if (!std::regex_match(column, match, of_place))
       return column;
-    const bool        is_reaction = match[1] == "reaction_";
-    const std::string kind        = is_reaction ? "boundary" : "point";
+    const bool        is_point = match[1] == "point";
+    const std::string kind     = is_point ? "point" : "boundary";
     const auto        number = static_cast<unsigned int>(std::stoul(match[2]));
-    return has(kind, number) ? (is_reaction ? "reaction_" : "displacement_") +
+    return has(kind, number) ? (is_point ? "displacement_" : match[1].str()) +
                                  match[3].str() + " of " + of(kind, number) :
                                column;
   }

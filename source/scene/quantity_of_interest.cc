@@ -20,20 +20,41 @@ namespace Viscoplastic
         for (unsigned int d = 0; d < dim; ++d)
           known.push_back({kind, i, d, name + '_' + "xyz"[d]});
       };
-    bool has_friction = false, opens = false;
+    bool         has_friction = false, opens = false;
+    unsigned int n_contacts = 0;
     for (const auto &[id, condition] : boundary)
       {
         has_friction |= condition.has_friction();
         opens |= condition.is_unilateral();
+        n_contacts += condition.has_contact_points();
       }
+    constexpr unsigned int all = QuantityOfInterest::all;
     if (has_friction)
       {
-        add(Kind::friction_force, 0, "friction_force");
+        add(Kind::friction_force, all, "friction_force");
         known.push_back(
           {Kind::friction_dissipation, 0, 0, "friction_dissipation"});
       }
     if (opens)
-      add(Kind::contact_force, 0, "contact_force");
+      add(Kind::contact_force, all, "contact_force");
+    for (const auto &[id, condition] : boundary)
+      {
+        // The force on the only one is that on all, under either name.
+        const std::string suffix = '_' + std::to_string(id) + '_';
+        if (const auto at = column.find(suffix);
+            n_contacts == 1 && condition.has_contact_points() &&
+            at != std::string::npos && column.find("_force") < at)
+          return quantity_of_interest(std::string(column).replace(at,
+                                                                  suffix.size(),
+                                                                  "_"),
+                                      boundary,
+                                      n_points,
+                                      of_section);
+        if (n_contacts > 1 && condition.has_friction())
+          add(Kind::friction_force, id, "friction_force_" + std::to_string(id));
+        if (n_contacts > 1 && condition.is_unilateral())
+          add(Kind::contact_force, id, "contact_force_" + std::to_string(id));
+      }
     for (const auto &[id, condition] : boundary)
       // The dual problem knows forces of constraints, not of springs.
       if (condition.constrains() && !condition.has_springs())

@@ -4,6 +4,7 @@ the verdict is the right one."""
 
 import contextlib
 import csv
+import dataclasses
 import io
 import json
 import re
@@ -12,6 +13,7 @@ import subprocess
 import sys
 import tempfile
 import time
+import unittest.mock
 from pathlib import Path
 
 import numpy as np
@@ -36,6 +38,8 @@ from plotting import effects as picture
 from plotting.command import main as plot
 from plotting.results import read_statistics
 from viscoplastic_contact import Program
+from viscoplastic_contact.study import effects
+from viscoplastic_contact.study.console import Console
 from viscoplastic_contact.study.effects_report import percent
 from viscoplastic_contact.study.runs import set_options
 from viscoplastic_contact.study.scene import Scene
@@ -547,6 +551,28 @@ class Effects(TestCase):
             with contextlib.redirect_stderr(errors):
                 self.assertNotEqual(plot([str(scene.effects), "loop"]), 0)
             self.assertIn("one picture, which goes without a name", errors.getvalue())
+
+    def test_what_takes_too_long(self):
+        """Is ended, and says nothing; nor do numbers that no solver stands."""
+        with Folder(VERIFICATION / "slab.prm", **SLAB) as scene:
+            study = effects.EffectsStudy(
+                Program(EXECUTABLE), scene.arguments(), [], Console()
+            )
+            self.assertTrue(study.compute_scene(0))
+            (never,) = (v for v in effect_variants(study.scene, 1.0, "") if v.is_extreme)
+            wrong = dataclasses.replace(
+                never, effect="other", overrides=["Boundary 2/Friction bound=no number"]
+            )
+            for variant, least, failure in (
+                (never, 0.0, "not computed: it takes more"),
+                (wrong, 10.0, "no number"),
+            ):
+                with unittest.mock.patch.multiple(
+                    effects, MOST_TIMES=1e-3, LEAST_LIMIT=least
+                ):
+                    result, _ = study.compare(variant, 0)
+                self.assertIn(failure, result.failure)
+                self.assertEqual(result.verdict, "could not be computed")
 
     def test_to_a_tolerance(self):
         with Case(

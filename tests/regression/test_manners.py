@@ -188,6 +188,25 @@ class Check(Manners):
         self.assertIn("Young", process.stderr)
         self.assertEqual(list(self.work.iterdir()), [])
 
+    def test_of_later_times(self):
+        """A coefficient that becomes negative within the only step, after t = 1.57; a
+        foundation that comes far into the body."""
+        for name, value, code, sentence in (
+            ("Friction coefficient", "0.2*sin(2*t)", 1, "0), t = 1.58; it must not be"),
+            ("Gap", "-0.5*t", 0, "boundary 2 overlaps the foundation by 1, 45 % of"),
+        ):
+            entries = {
+                "Contact law": "unilateral",
+                "Friction law": "coulomb",
+                "Friction coefficient": 0.2,
+                name: value,
+            }
+            sets = [f"Boundary 2/{name}={value}" for name, value in entries.items()]
+            sets.append("Time/Phases=2: 1")
+            options = [word for entry in sets for word in ("--set", entry)]
+            process = self.call("--check", SLAB, *options, code=code)
+            self.assertIn(sentence, " ".join((process.stdout + process.stderr).split()))
+
 
 class Files(Manners):
     def phases(self):

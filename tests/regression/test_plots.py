@@ -482,6 +482,14 @@ class Numbers(TestCase):
         mesh = Mesh(points, cells, **of, **friction)
         sticks = style.STICKING
         self.assertEqual(friction_state(mesh).tolist(), [sticks, none, open_, sticks])
+        # the last is held by something else that moves it, beside one that slips
+        friction = {"stick": (1, 0, 0, 1), "bound": (1, 1, 0, 1)}
+        for second, last in (0, sticks), (0.2, open_):
+            rates = [(1e-12, 0, 0), (second, 0, 0), (0, 0, 0), (0.1, 0, 0)]
+            mesh = Mesh(points, cells, **of, **friction, slip_rate=rates)
+            self.assertEqual(
+                friction_state(mesh).tolist(), [sticks, style.SLIPPING, open_, last]
+            )
 
     def test_runs_of_states(self):
         self.assertEqual(

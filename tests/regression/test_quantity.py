@@ -686,6 +686,118 @@ class EachKind(TestCase):
         self.check("friction_dissipation", 0.7, 3, **held)
 
 
+class BetweenTwoPlanes(TestCase):
+    """A ring that is squeezed between two rough planes, whose forces cancel."""
+
+    SEAL = {
+        **POINTS,
+        "Geometry/Plane model": "axisymmetric",
+        "Geometry/Arguments": "4, 4 : 20, 0 : 25, 5 : true",
+        "Material/Young's modulus": 12,
+        "Material/Poisson's ratio": 0.4,
+        "Boundary 0/Role": "free",
+        "Boundary 1/Role": "free",
+        **{
+            f"Boundary {side}/{entry}": value
+            for side in (2, 3)
+            for entry, value in (
+                ("Role", "contact"),
+                ("Contact law", "unilateral"),
+                ("Friction law", "coulomb"),
+                ("Friction coefficient", 0.2),
+            )
+        },
+        "Boundary 3/Name": "top",
+        "Boundary 3/Gap": "-0.2*t",
+        "Time/Phases": "1: 4",
+        "Output/Fields every": 0,
+    }
+
+    def test_of_one_plane(self):
+        """As that of half the ring on a plane of symmetry, whose only contact it is."""
+        half = {
+            **{k: v for k, v in self.SEAL.items() if k[:10] != "Boundary 3"},
+            "Geometry/Arguments": "4, 2 : 20, 0 : 25, 2.5 : true",
+            "Boundary 2/Gap": "-0.1*t",
+            "Boundary 3/Role": "symmetry",
+        }
+        fine = {**self.SEAL, "Geometry/Global refinements": 3}
+        fine = run("seal", fine, text="")
+        more = {"Geometry/Global refinements": 1}
+        for quantity, column, of_half in (
+            ("contact_force_y of top", "contact_force_3_y", "contact_force_y"),
+            ("friction_force_2_x", "friction_force_2_x", "friction_force_2_x"),
+        ):
+            with self.subTest(quantity):
+                coarse = run("seal", {**self.SEAL, **more, **of(quantity)}, text="")
+                known = run("half", {**half, **more, **of(of_half)}, text="")
+                self.assertClose(
+                    coarse["quantity_space"][1:], known["quantity_space"][1:], 1e-8
+                )
+                error = fine[column][-1] - coarse[column][-1]
+                # measured: 1.7, 2.7
+                quotient = coarse["quantity_space"][-1] / abs(error)
+                self.assertGreater(quotient, 0.7)
+                self.assertLess(quotient, 3)
+                kept = run("seal", {**self.SEAL, **of(quantity, 0.02)}, text="")
+                self.assertIn("has been kept", kept.stdout)
+                self.assertClose(kept[column][-1], fine[column][-1], 0.02)
+
+    def test_of_two_pieces_of_a_floor(self):
+        """Which share nodes, beside hanging ones: corrections add up to that of both."""
+        for dim, force in (2, "contact_force"), (3, "friction_force"):
+            floor, top = 2 * dim - 2, 2 * dim - 1
+            up, sides = "yz"[dim - 2], "0" if dim == 2 else "if(y < 0.5, 2, 3)"
+            scene = {
+                "Dimension": dim,
+                "Geometry/Arguments": "2, 2, 2 : 0, 0, 0 : 1, 1, 1 : true"
+                if dim == 3
+                else "4, 4 : 0, 0 : 1, 1 : true",
+                "Geometry/Boundary ids": f"if({up} < 1e-9, if(x < 0.5, {floor}, 9), "
+                f"if({up} > 1 - 1e-9, {top}, if(x < 1e-9, 0, "
+                f"if(x > 1 - 1e-9, 1, {sides}))))",
+                "Geometry/Boundary refinements": f"{floor}: 1",
+                "Material/Young's modulus": 10,
+                **{f"Boundary {side}/Role": "free" for side in range(floor)},
+                "Boundary 1/Role": "traction",
+                "Boundary 1/Traction": "-0.2*t" + "; 0" * (dim - 1),
+                f"Boundary {top}/Role": "displacement",
+                f"Boundary {top}/Displacement": "0.02*t" + "; 0" * (dim - 2) + "; -0.05*t",
+                "Time/Phases": "1: 2",
+                "Output/Fields every": 0,
+                "Solver/Contact tolerance": 1e-11,
+            }
+            for side, coefficient in (floor, 0.1), (9, 0.2):
+                scene[f"Boundary {side}/Role"] = "contact"
+                scene[f"Boundary {side}/Contact law"] = "unilateral"
+                scene[f"Boundary {side}/Friction law"] = "coulomb"
+                scene[f"Boundary {side}/Friction coefficient"] = coefficient
+            axis = "y" if dim == 2 else "x"
+            both, *parts = (
+                run("floor", {**scene, **of(f"{force}_{part}{axis}")}, ranks, text="")
+                for part, ranks in (("", 1), (f"{floor}_", 2), ("9_", 3))
+            )
+            added = sum(part["quantity_correction"] for part in parts)
+            self.assertClose(added, both["quantity_correction"], 1e-6, what=force)
+            for part in parts:
+                self.assertGreater(abs(part["quantity_correction"][-1]), 1e-4)
+
+    def test_of_the_work_of_friction(self):
+        """Which has n of the n (n + 1) halves of steps too much; a note tells."""
+        for steps, is_told in (4, True), (16, False):
+            seal = {**self.SEAL, "Time/Phases": f"1: {steps}"}
+            words = run("seal", seal, text="").stdout
+            sentence = "Note: the energy balance is missing 20 % of the friction"
+            (self.assertIn if is_told else self.assertNotIn)(sentence, words)
+        self.assertNotIn("energy balance is missing", words)
+
+    def test_of_both(self):
+        """Nothing but rounding, of which no part can be kept."""
+        result = run("seal", {**self.SEAL, **of("contact_force_y", 0.02)}, text="")
+        self.assertIn("'contact_force_y' is zero throughout", result.stdout)
+        self.assertNotIn("has been kept", result.stdout)
+
+
 class OnTheBoundary(TestCase):
     """What a mesh misses on the boundary is known, though no residual feels it."""
 

@@ -1039,6 +1039,7 @@ class Refused(TestCase):
             f"'{coefficient}' is -0.1",
             "must not be negative",
         )
+        self.refused({"Boundary 3/Displacement": "free; free"}, "prescribes nothing")
 
     def test_lost_in_rounding(self):
         """Flat cells: the error that stays is told, and is what the same scene in

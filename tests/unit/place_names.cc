@@ -72,6 +72,8 @@ namespace
     EXPECT_EQ(names.column("reaction_x of boundary 0"), "reaction_0_x");
     EXPECT_EQ(names.column("displacement_y of floor"), "point2_y");
     EXPECT_EQ(names.column("friction_force_x"), "friction_force_x");
+    EXPECT_EQ(names.column("friction_force_x of roof"), "friction_force_3_x");
+    EXPECT_EQ(names.column("contact_force_y of roof"), "contact_force_3_y");
     expect_refusal([&] { names.column("reaction_y of rof"); },
                    "there is no boundary 'rof'; did you mean 'roof'?");
     expect_refusal([&] { names.column("reaction_y of crown"); },

@@ -170,6 +170,14 @@ namespace Viscoplastic
     Tensor<1, dim>
     resultant(const ContactState &state, const bool of_obstacles = false) const;
 
+    /// The part of the force of a point that is on a boundary, by its area; 1
+    /// where no other one has contact points.
+    double
+    area_share(const types::boundary_id id, const unsigned int point) const
+    {
+      return area_shares.empty() ? 1. : area_shares.at(id)[point];
+    }
+
     /// The two on the foundation of one boundary.
     struct BoundaryForces
     {

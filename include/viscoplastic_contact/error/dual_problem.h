@@ -55,6 +55,7 @@ namespace Viscoplastic
    *   slip: sign = 1;
    * - of the contact force likewise, along the normals where contact is closed,
    *   with K the slope of the pressure where a foundation gives way: sign = 1;
+   *   of both on one boundary, times the part of a point's area that is there;
    * - of the work of friction in all steps, as long as what slips goes on in
    * the same direction, l(v) = sum_slipping lambda_c . v_c: sign = 1.
    *
@@ -77,6 +78,11 @@ namespace Viscoplastic
     /// Collective.
     double
     value(const State<dim> &state, const Forces<dim> &forces) const;
+
+    /// The size of the forces that a force J adds up, of which rounding leaves
+    /// something where they cancel; zero of other quantities. Collective.
+    double
+    size_of_parts(const State<dim> &state, const Forces<dim> &forces) const;
 
     /// Solve with a solver for the matrix of a(.,.), with the law of bounds
     /// that follow the pressure of the step itself, if they do. Zero for the

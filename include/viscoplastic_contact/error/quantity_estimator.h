@@ -68,6 +68,8 @@ namespace Viscoplastic
     /// knows nothing of what the meshes before have done to z, or of fronts of
     /// slip between nodes. How large that may be: doc/error_bar.md.
     static constexpr double safety = 2.;
+    /// A quantity that is less than this of what it could be is rounding.
+    static constexpr double nothing = 1e-9;
     /// What has crept for less than this of a relaxation time is elastic.
     static constexpr double elastic = 0.01;
     /// What counts at least of the sum without signs where a body creeps:

@@ -39,9 +39,10 @@ namespace Viscoplastic
   /// The time integration keeps that of the bulk exactly, whatever the step
   /// size, so that the defect is that of friction: sum lambda . s takes the
   /// multiplier at the end of each step, the work of the loads the mean. It
-  /// vanishes with the step size. A body gives way when its mesh is refined,
-  /// and the loads do work; what changes of the mesh do to the stored energy
-  /// beyond that is no physics and counts apart.
+  /// vanishes with the step size, but for steps in which a body jumps, as where
+  /// it slips or opens after a stage. A body gives way when its mesh is
+  /// refined, and the loads do work; what changes of the mesh do to the stored
+  /// energy beyond that is no physics and counts apart.
   class EnergyBalance
   {
   public:

@@ -26,8 +26,11 @@ namespace Viscoplastic
       axial_force
     };
 
+    /// In the place of an id: all boundaries together.
+    static constexpr unsigned int all = numbers::invalid_unsigned_int;
+
     Kind kind;
-    /// The boundary id of a reaction, the number of a point; and x, y or z.
+    /// The boundary id of a force, the number of a point; and x, y or z.
     unsigned int number = 0, component = 0;
     /// The column.
     std::string name;
@@ -53,6 +56,12 @@ namespace Viscoplastic
     {
       return kind == Kind::friction_force || kind == Kind::contact_force ||
              is_reaction();
+    }
+
+    bool
+    is_of(const types::boundary_id id) const
+    {
+      return number == all || number == id;
     }
 
     /// Whether it is a force of what is prescribed.

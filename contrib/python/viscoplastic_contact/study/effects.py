@@ -31,16 +31,21 @@ from .variants import KINDS, OBSERVATION, PROBLEM, EffectVariant, both, effect_v
 # error; nothing changes by more than its error; in between, on the finest
 # discretization there was time for; nothing changes but for the error of the
 # iterations; what should change nothing changes nothing by more than its error; the
-# scene cannot be computed without it.
+# scene cannot be computed without it; what stands in its place is beyond the program,
+# which says nothing of the effect.
 CALLED_FOR = "called for"
 BELOW_THE_ERROR = "below the error of this discretization"
 AS_LARGE_AS_THE_ERROR = "as large as the error of this discretization"
 NEVER_ACTED = "never acted"
 ONLY_WATCHES = "only watches"
 CANNOT_BE_LEFT_OUT = "cannot be left out"
+NOT_COMPUTED = "could not be computed"
 
 # Changes by so many errors are changes.
 CLEAR = 2.0
+# A simplification may take so many times as long as the scene, and these seconds in
+# any case.
+MOST_TIMES, LEAST_LIMIT = 50, 10.0
 # Runs shorter than this are timed twice.
 SHORT_RUN = 1.0
 # A run on more than this part of the cells is no coarser one.
@@ -73,8 +78,9 @@ class EffectResult:
     decisive: QuantityChange = field(default_factory=lambda: QuantityChange(""))
     with_it: RunCost = field(default_factory=RunCost)
     without: RunCost = field(default_factory=RunCost)
-    # Why it could not be computed.
+    # Why it could not be computed, and whether for its time alone.
     failure: str = ""
+    is_too_slow: bool = False
 
     @property
     def is_open(self):
@@ -140,6 +146,7 @@ class Attempt:
     computed: Optional[Computed] = None
     failure: str = ""
     is_too_long: bool = False
+    is_too_slow: bool = False
 
 
 def own_memory(record):
@@ -219,8 +226,8 @@ class EffectsStudy:
         """Whether a run of so many seconds ends within the budget."""
         return time.monotonic() - self.start + seconds <= self.scene.budget
 
-    def make(self, runs, key):
-        outcome = runs.make(key)
+    def make(self, runs, key, limit=None):
+        outcome = runs.make(key, limit)
         if outcome.interruption:
             self.stop(outcome.interruption)
         return outcome
@@ -230,8 +237,9 @@ class EffectsStudy:
             f"{name} has ended the study of effects; the same command goes on."
         )
 
-    def compute(self, runs, level, expected_seconds):
-        """Find a run, or make it if it can be expected to end within the budget."""
+    def compute(self, runs, level, expected_seconds, limit=None):
+        """Find a run, or make it if it can be expected to end within the budget, and
+        if it ends within the limit."""
         attempt = Attempt()
 
         def find_or_make(key, expected):
@@ -241,8 +249,9 @@ class EffectsStudy:
             attempt.is_too_long = not self.is_affordable(expected)
             if attempt.is_too_long:
                 return None
-            outcome = self.make(runs, key)
+            outcome = self.make(runs, key, limit)
             attempt.failure = outcome.failure
+            attempt.is_too_slow = outcome.is_too_slow
             return outcome.record
 
         key = self.key_of(runs, level)
@@ -336,7 +345,9 @@ class EffectsStudy:
         )
         try:
             runs = self.runs_of(variant, level)
-            attempt = self.compute(runs, level, here.record.number("seconds_total"))
+            seconds = here.record.number("seconds_total")
+            limit = max(LEAST_LIMIT, MOST_TIMES * seconds)
+            attempt = self.compute(runs, level, seconds, limit)
         except Interrupted:
             raise
         except UserError as error:  # what is wrong with its entries
@@ -350,7 +361,14 @@ class EffectsStudy:
                 self.runs.pop((variant.name, level), None)
                 other = replace(variant, overrides=[*variant.overrides, without])
                 return self.compare(other, level)
-            result.failure = attempt.failure
+            result.failure, result.is_too_slow = attempt.failure, attempt.is_too_slow
+            if attempt.is_too_slow:
+                result.failure = (
+                    f"not computed: it takes more than {MOST_TIMES} times the "
+                    f"{seconds:.2g} s of the scene."
+                )
+            if attempt.is_too_slow or variant.is_extreme:
+                result.verdict = NOT_COMPUTED
             return result, None
         record, table = attempt.computed.record, attempt.computed.table
         result.without = attempt.computed.cost
@@ -396,7 +414,11 @@ class EffectsStudy:
             if result:
                 self.keep(result)
             # What cannot be computed here may be so with smaller steps.
-            if not result or result.is_open or (result.failure and level < 0):
+            if (
+                not result
+                or result.is_open
+                or (result.failure and level < 0 and not result.is_too_slow)
+            ):
                 undecided.append(variant)
             self.write(False)
         return undecided

@@ -203,7 +203,7 @@ def stagnation(pilots, measure, eps):
 def refine_pilots(runs, pilots, measure, eps, n_left, console):
     """Pilots on the next finer meshes, so many times at most, where those that there are
     stagnate. Raises UserError where they still do."""
-    scene = runs.scene
+    scene, who = runs.scene, "The pilots stagnate"
     while why := stagnation(pilots, measure, eps):
         finest = max(pilots, key=lambda r: (r.key.mesh_level, r.key.time_level))
         key = finest.key._replace(mesh_level=finest.key.mesh_level + 1)
@@ -226,7 +226,8 @@ def refine_pilots(runs, pilots, measure, eps, n_left, console):
                 "let 'Error control/Tolerance' choose them."
             )
         n_left -= 1
-        console.say(f"The pilots stagnate: {why}; finer ones follow.")
+        console.say(f"{who}: {why}; finer ones follow.")
+        who = "So do these"
         pilots = make_pilots(runs, key, True, console)
     return pilots
 

@@ -43,11 +43,13 @@ class Interrupted(RunError):
 @dataclass
 class Outcome:
     """How a run has ended: one of these. Failure: why the scene could not be
-    computed, in a sentence; interruption: the name of the signal that ended it."""
+    computed, in a sentence; interruption: the name of the signal that ended it. Too
+    slow: whether it was ended for its time."""
 
     record: Optional[RunRecord] = None
     failure: str = ""
     interruption: str = ""
+    is_too_slow: bool = False
 
 
 def make_directory(path):
@@ -119,9 +121,10 @@ def die_with_parent():
         pass
 
 
-def launch(program, arguments, stdout=subprocess.DEVNULL):
+def launch(program, arguments, stdout=subprocess.DEVNULL, limit=None):
     """Run the program; returns exit code, messages, and the name of a signal that
-    came meanwhile. Signals go to the program, which ends after a checkpoint."""
+    came meanwhile. Signals go to the program, which ends after a checkpoint, as it
+    does after so many seconds as a limit; then raises subprocess.TimeoutExpired."""
     received = []
     process = subprocess.Popen(
         program.command(*arguments),
@@ -140,7 +143,13 @@ def launch(program, arguments, stdout=subprocess.DEVNULL):
 
     before = {n: signal.signal(n, forward) for n in (signal.SIGINT, signal.SIGTERM)}
     try:
-        _, messages = process.communicate()
+        _, messages = process.communicate(timeout=limit)
+    except subprocess.TimeoutExpired:
+        process.terminate()
+        process.communicate()
+        if not received:
+            raise
+        messages = ""
     finally:
         for number, handler in before.items():
             signal.signal(number, handler)
@@ -264,8 +273,9 @@ class StudyRuns:
         record.key = key
         return record if has_key and record.stamp == expected else None
 
-    def make(self, key):
-        """Compute a run. It goes on from a checkpoint that a signal has left."""
+    def make(self, key, limit=None):
+        """Compute a run, within so many seconds if there is a limit. It goes on from a
+        checkpoint that a signal has left."""
         entries = self.entries_of(key)
         stamp, place = self.stamp(key, entries), Path(self.place(key))
         # What has been left of the same run goes on, of another one goes.
@@ -276,15 +286,16 @@ class StudyRuns:
         goes_on = mark.exists() and mark.read_text(errors="replace") == begun
         replace_file(mark, begun)
         options = set_options(self.overrides + entries)
-        code, messages, interruption = launch(
-            self.program,
-            [
-                *("--quiet", "--log", place / "log.txt"),
-                *(["--restart=auto"] if goes_on else []),
-                *self.files,
-                *options,
-            ],
-        )
+        arguments = [
+            *("--quiet", "--log", place / "log.txt"),
+            *(["--restart=auto"] if goes_on else []),
+            *self.files,
+            *options,
+        ]
+        try:
+            code, messages, interruption = launch(self.program, arguments, limit=limit)
+        except subprocess.TimeoutExpired:
+            return Outcome(failure=f"It takes more than {limit:.3g} s.", is_too_slow=True)
         if code != 0:
             if interruption:
                 return Outcome(interruption=interruption)
@@ -292,7 +303,7 @@ class StudyRuns:
         record = self.record_of(key, place)
         if record is None:  # there was nothing left to compute
             mark.unlink()
-            return self.make(key)
+            return self.make(key, limit)
         record.name, record.stamp = self.name(key), dict(stamp)
         record.stamp["overrides"] = "; ".join(self.overrides + entries)
         replace_file(place / "result.json", to_json(record))

@@ -140,6 +140,7 @@ def exponents_in_words(model):
         for cost in (model.seconds, model.cells, model.steps)
     )
     return (
-        f"Seconds grow as {seconds}, the mean number of cells as {cells}, steps as "
+        f"Beyond what any run takes, seconds grow as {seconds}, the mean number of "
+        f"cells as {cells}, steps as "
         f"{steps}."
     )

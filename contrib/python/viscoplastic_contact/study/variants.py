@@ -45,6 +45,11 @@ class EffectVariant:
         """Whether energy norms are those of bodies that cannot be compared."""
         return self.instead == "rigid"
 
+    @property
+    def is_extreme(self):
+        """Whether it has numbers that solvers may not stand, in the place of a limit."""
+        return self.instead in ("rigid", "never")
+
     def excludes(self, other):
         """Whether both cannot be left out at once, or one contains the other."""
         if self.effect == other.effect:

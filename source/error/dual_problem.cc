@@ -1,12 +1,9 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <deal.II/base/quadrature_lib.h>
 #include <deal.II/dofs/dof_tools.h>
-#include <deal.II/fe/fe_values.h>
 
 #include <viscoplastic_contact/contact/contact_points.h>
 #include <viscoplastic_contact/error/dual_problem.h>
-
-#include <cmath>
 
 namespace Viscoplastic
 {

@@ -2,8 +2,6 @@
 #include <viscoplastic_contact/error/error_budget.h>
 #include <viscoplastic_contact/parameters/parameter_file.h>
 
-#include <algorithm>
-#include <cmath>
 #include <limits>
 
 namespace Viscoplastic

@@ -1,12 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <deal.II/base/mpi.h>
-
 #include <viscoplastic_contact/discretization/initial_state.h>
 #include <viscoplastic_contact/error/error_estimator.h>
 #include <viscoplastic_contact/laws/backward_euler.h>
 
-#include <algorithm>
-#include <cmath>
 #include <limits>
 
 namespace Viscoplastic

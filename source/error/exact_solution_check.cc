@@ -161,8 +161,5 @@ namespace Viscoplastic
 
 
 
-  template void
-  check_exact_solution<2>(const AdmissibleSpace<2> &);
-  template void
-  check_exact_solution<3>(const AdmissibleSpace<3> &);
+  VISCOPLASTIC_INSTANTIATE(check_exact_solution);
 } // namespace Viscoplastic

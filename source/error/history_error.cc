@@ -1,10 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <deal.II/base/mpi.h>
-
 #include <viscoplastic_contact/base/messages.h>
 #include <viscoplastic_contact/error/history_error.h>
-
-#include <cmath>
 
 namespace Viscoplastic
 {
@@ -53,12 +49,5 @@ namespace Viscoplastic
 
 
 
-  template double
-  cell_mean_defect<2>(const LocalCells<2> &,
-                      const FlowLaws<2> &,
-                      const State<2> &);
-  template double
-  cell_mean_defect<3>(const LocalCells<3> &,
-                      const FlowLaws<3> &,
-                      const State<3> &);
+  VISCOPLASTIC_INSTANTIATE(cell_mean_defect);
 } // namespace Viscoplastic

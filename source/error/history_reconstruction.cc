@@ -1,11 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <deal.II/distributed/tria_base.h>
-#include <deal.II/lac/la_parallel_vector.h>
 
 #include <viscoplastic_contact/error/history_reconstruction.h>
 #include <viscoplastic_contact/mesh/cell_order.h>
-
-#include <algorithm>
 
 namespace Viscoplastic
 {
@@ -30,9 +27,7 @@ namespace Viscoplastic
 
 
 
-    /**
-     * The owned cells, the ghosts after them, and who is whose neighbor.
-     */
+    /// The owned cells, the ghosts after them, and who is whose neighbor.
     template <int dim>
     class Neighborhood
     {
@@ -336,12 +331,5 @@ namespace Viscoplastic
 
 
 
-  template HistoryReconstruction
-  reconstruct_history<2>(const StressSpace<2> &,
-                         const IrreversibleStress &,
-                         const IrreversibleStress &);
-  template HistoryReconstruction
-  reconstruct_history<3>(const StressSpace<3> &,
-                         const IrreversibleStress &,
-                         const IrreversibleStress &);
+  VISCOPLASTIC_INSTANTIATE(reconstruct_history);
 } // namespace Viscoplastic

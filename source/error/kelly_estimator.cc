@@ -1,13 +1,9 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <deal.II/base/quadrature_lib.h>
-#include <deal.II/fe/fe_values.h>
 #include <deal.II/numerics/error_estimator.h>
 
 #include <viscoplastic_contact/error/kelly_estimator.h>
 #include <viscoplastic_contact/mesh/cell_order.h>
-
-#include <cmath>
-#include <numeric>
 
 namespace Viscoplastic
 {
@@ -97,16 +93,7 @@ namespace Viscoplastic
 
 
 
-  template double
-  total_estimate(const Vector<double> &, const Triangulation<2> &);
-  template double
-  total_estimate(const Vector<double> &, const Triangulation<3> &);
-  template double
-  strain_norm<2>(const AdmissibleSpace<2> &, const DistributedVector &);
-  template double
-  strain_norm<3>(const AdmissibleSpace<3> &, const DistributedVector &);
-  template Vector<double>
-  kelly_estimate<2>(const AdmissibleSpace<2> &, const DistributedVector &);
-  template Vector<double>
-  kelly_estimate<3>(const AdmissibleSpace<3> &, const DistributedVector &);
+  VISCOPLASTIC_INSTANTIATE(total_estimate);
+  VISCOPLASTIC_INSTANTIATE(strain_norm);
+  VISCOPLASTIC_INSTANTIATE(kelly_estimate);
 } // namespace Viscoplastic

@@ -4,7 +4,6 @@
 #include <viscoplastic_contact/error/reference_fields.h>
 #include <viscoplastic_contact/error/space_estimator.h>
 
-#include <cmath>
 #include <limits>
 #include <sstream>
 

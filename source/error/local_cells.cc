@@ -1,13 +1,9 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <deal.II/base/quadrature_lib.h>
 #include <deal.II/distributed/tria_base.h>
-#include <deal.II/lac/la_parallel_vector.h>
 
 #include <viscoplastic_contact/error/local_cells.h>
-#include <viscoplastic_contact/laws/strain.h>
 #include <viscoplastic_contact/mesh/cell_order.h>
-
-#include <cmath>
 
 namespace Viscoplastic
 {

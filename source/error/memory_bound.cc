@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <viscoplastic_contact/error/memory_bound.h>
-#include <viscoplastic_contact/linear_solvers/solver_choice.h>
 
-#include <cmath>
 #include <limits>
 
 namespace Viscoplastic
@@ -43,8 +41,5 @@ namespace Viscoplastic
 
 
 
-  template unsigned int
-  cells_in_memory<2>(const Discretization<2> &, const double);
-  template unsigned int
-  cells_in_memory<3>(const Discretization<3> &, const double);
+  VISCOPLASTIC_INSTANTIATE(cells_in_memory);
 } // namespace Viscoplastic

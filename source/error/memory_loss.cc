@@ -4,8 +4,6 @@
 #include <viscoplastic_contact/mesh/marking_threshold.h>
 #include <viscoplastic_contact/mesh/mesh_refinement.h>
 
-#include <cmath>
-
 namespace Viscoplastic
 {
   namespace
@@ -151,22 +149,6 @@ namespace Viscoplastic
 
 
 
-  template double
-  memory_loss<2>(const parallel::distributed::Triangulation<2> &,
-                 const StressSpace<2> &,
-                 const IrreversibleStress &);
-  template double
-  memory_loss<3>(const parallel::distributed::Triangulation<3> &,
-                 const StressSpace<3> &,
-                 const IrreversibleStress &);
-  template void
-  limit_memory_loss<2>(parallel::distributed::Triangulation<2> &,
-                       const StressSpace<2> &,
-                       const IrreversibleStress &,
-                       const double);
-  template void
-  limit_memory_loss<3>(parallel::distributed::Triangulation<3> &,
-                       const StressSpace<3> &,
-                       const IrreversibleStress &,
-                       const double);
+  VISCOPLASTIC_INSTANTIATE(memory_loss);
+  VISCOPLASTIC_INSTANTIATE(limit_memory_loss);
 } // namespace Viscoplastic

@@ -6,9 +6,6 @@
 #include <viscoplastic_contact/error/quantity_estimator.h>
 #include <viscoplastic_contact/mesh/mesh_marking.h>
 
-#include <algorithm>
-#include <cmath>
-
 namespace Viscoplastic
 {
   template <int dim>

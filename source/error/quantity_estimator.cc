@@ -1,11 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <deal.II/base/mpi.h>
-
 #include <viscoplastic_contact/error/error_estimator.h>
 #include <viscoplastic_contact/error/quantity_estimator.h>
-
-#include <algorithm>
-#include <cmath>
 
 namespace Viscoplastic
 {

@@ -2,15 +2,8 @@
 #include <deal.II/base/quadrature_lib.h>
 #include <deal.II/dofs/dof_tools.h>
 #include <deal.II/fe/fe_q.h>
-#include <deal.II/lac/affine_constraints.h>
 
 #include <viscoplastic_contact/error/recovery_estimator.h>
-
-#include <algorithm>
-#include <cmath>
-#include <map>
-#include <set>
-#include <tuple>
 
 namespace Viscoplastic
 {

@@ -1,16 +1,12 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <deal.II/base/mpi_remote_point_evaluation.h>
 #include <deal.II/base/quadrature_lib.h>
-#include <deal.II/fe/fe_values.h>
 #include <deal.II/fe/mapping_q1.h>
 
 #include <viscoplastic_contact/base/binary_archive.h>
 #include <viscoplastic_contact/base/files.h>
 #include <viscoplastic_contact/base/messages.h>
 #include <viscoplastic_contact/error/reference_fields.h>
-#include <viscoplastic_contact/laws/strain.h>
-
-#include <sstream>
 
 namespace Viscoplastic
 {
@@ -36,11 +32,9 @@ namespace Viscoplastic
 
 
 
-    /**
-     * Bring each sample to the owned cell it lies in:
-     * visit(cell, samples in it, their points on the unit cell). Returns
-     * after all ranks have.
-     */
+    /// Bring each sample to the owned cell it lies in:
+    /// visit(cell, samples in it, their points on the unit cell). Returns
+    /// after all ranks have.
     template <int dim, typename Sample, typename Visitor>
     void
     visit_cells_of(const std::vector<Sample> &samples,
@@ -483,34 +477,8 @@ namespace Viscoplastic
 
   template struct FieldSamples<2>;
   template struct FieldSamples<3>;
-  template FieldSamples<2>
-  sample_fields<2>(const StressSpace<2> &,
-                   const State<2> &,
-                   const DistributedVector *);
-  template FieldSamples<3>
-  sample_fields<3>(const StressSpace<3> &,
-                   const State<3> &,
-                   const DistributedVector *);
-  template void
-  write_samples<2>(const FieldSamples<2> &,
-                   const std::string &,
-                   const MPI_Comm);
-  template void
-  write_samples<3>(const FieldSamples<3> &,
-                   const std::string &,
-                   const MPI_Comm);
-  template FieldSamples<2>
-  read_samples<2>(const std::string &, const MPI_Comm);
-  template FieldSamples<3>
-  read_samples<3>(const std::string &, const MPI_Comm);
-  template SolutionErrors
-  differences<2>(const FieldSamples<2> &,
-                 const StressSpace<2> &,
-                 const State<2> &,
-                 const DistributedVector *);
-  template SolutionErrors
-  differences<3>(const FieldSamples<3> &,
-                 const StressSpace<3> &,
-                 const State<3> &,
-                 const DistributedVector *);
+  VISCOPLASTIC_INSTANTIATE(sample_fields);
+  VISCOPLASTIC_INSTANTIATE(write_samples);
+  VISCOPLASTIC_INSTANTIATE(read_samples);
+  VISCOPLASTIC_INSTANTIATE(differences);
 } // namespace Viscoplastic

@@ -1,13 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <deal.II/distributed/tria_base.h>
-#include <deal.II/lac/la_parallel_vector.h>
 
 #include <viscoplastic_contact/contact/normal_compliance.h>
 #include <viscoplastic_contact/error/residual_estimator.h>
-#include <viscoplastic_contact/laws/strain.h>
-
-#include <algorithm>
-#include <cmath>
 
 namespace Viscoplastic
 {

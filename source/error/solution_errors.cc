@@ -1,11 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <deal.II/base/quadrature_lib.h>
-#include <deal.II/fe/fe_values.h>
 
 #include <viscoplastic_contact/error/solution_errors.h>
-#include <viscoplastic_contact/laws/strain.h>
-
-#include <cmath>
 
 namespace Viscoplastic
 {
@@ -210,12 +206,5 @@ namespace Viscoplastic
 
 
 
-  template SolutionErrors
-  solution_errors<2>(const StressSpace<2> &,
-                     const State<2> &,
-                     const DistributedVector *);
-  template SolutionErrors
-  solution_errors<3>(const StressSpace<3> &,
-                     const State<3> &,
-                     const DistributedVector *);
+  VISCOPLASTIC_INSTANTIATE(solution_errors);
 } // namespace Viscoplastic

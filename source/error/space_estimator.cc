@@ -5,8 +5,6 @@
 #include <viscoplastic_contact/error/space_estimator.h>
 #include <viscoplastic_contact/error/volumetric_locking.h>
 
-#include <algorithm>
-
 namespace Viscoplastic
 {
   template <int dim>
@@ -185,8 +183,5 @@ namespace Viscoplastic
 
   template class SpaceEstimator<2>;
   template class SpaceEstimator<3>;
-  template Vector<double>
-  squared_recovery_estimate<2>(const StressSpace<2> &, const State<2> &);
-  template Vector<double>
-  squared_recovery_estimate<3>(const StressSpace<3> &, const State<3> &);
+  VISCOPLASTIC_INSTANTIATE(squared_recovery_estimate);
 } // namespace Viscoplastic

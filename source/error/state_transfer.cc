@@ -1,11 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <viscoplastic_contact/base/number_range.h>
-#include <viscoplastic_contact/error/history_reconstruction.h>
 #include <viscoplastic_contact/error/state_transfer.h>
 #include <viscoplastic_contact/mesh/cell_order.h>
-
-#include <cmath>
-#include <limits>
 
 namespace Viscoplastic
 {
@@ -384,22 +380,8 @@ namespace Viscoplastic
 
 
 
-  template void
-  share_mismatch<2>(const StressSpace<2> &,
-                    const IrreversibleStress &,
-                    State<2> &);
-  template void
-  share_mismatch<3>(const StressSpace<3> &,
-                    const IrreversibleStress &,
-                    State<3> &);
   template class StateTransfer<2>;
   template class StateTransfer<3>;
-  template ContactState
-  contact_on_new_mesh<2>(const Discretization<2> &,
-                         const State<2> &,
-                         const DistributedVector &);
-  template ContactState
-  contact_on_new_mesh<3>(const Discretization<3> &,
-                         const State<3> &,
-                         const DistributedVector &);
+  VISCOPLASTIC_INSTANTIATE(share_mismatch);
+  VISCOPLASTIC_INSTANTIATE(contact_on_new_mesh);
 } // namespace Viscoplastic

@@ -1,10 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <deal.II/base/mpi.h>
-
 #include <viscoplastic_contact/error/swing_of_data.h>
-
-#include <algorithm>
-#include <cmath>
 
 namespace Viscoplastic
 {
@@ -268,12 +263,5 @@ namespace Viscoplastic
 
 
 
-  template Swing
-  swing_of_data<2>(const Discretization<2> &,
-                   const EvaluatedState<2> &,
-                   const EvaluatedState<2> &);
-  template Swing
-  swing_of_data<3>(const Discretization<3> &,
-                   const EvaluatedState<3> &,
-                   const EvaluatedState<3> &);
+  VISCOPLASTIC_INSTANTIATE(swing_of_data);
 } // namespace Viscoplastic

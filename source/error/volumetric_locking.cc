@@ -1,11 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <deal.II/base/mpi.h>
-
 #include <viscoplastic_contact/base/messages.h>
 #include <viscoplastic_contact/error/volumetric_locking.h>
 
-#include <algorithm>
-#include <cmath>
 #include <numeric>
 
 namespace Viscoplastic
@@ -115,14 +111,5 @@ namespace Viscoplastic
 
 
 
-  template VolumetricLocking
-  volumetric_locking<2>(const LocalCells<2> &,
-                        const FlowLaws<2> &,
-                        const State<2> &,
-                        const double);
-  template VolumetricLocking
-  volumetric_locking<3>(const LocalCells<3> &,
-                        const FlowLaws<3> &,
-                        const State<3> &,
-                        const double);
+  VISCOPLASTIC_INSTANTIATE(volumetric_locking);
 } // namespace Viscoplastic

@@ -4,7 +4,6 @@
 #include <viscoplastic_contact/base/linear_algebra.h>
 #include <viscoplastic_contact/linear_solvers/face_restriction.h>
 
-
 namespace Viscoplastic
 {
   FaceRestriction::FaceRestriction(ContactLayout                        face,

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <viscoplastic_contact/linear_solvers/level_masks.h>
 
-
 namespace Viscoplastic
 {
   namespace

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+
 // This file alone is compiled for AVX2 and FMA; elsewhere it is empty.
 
 #ifdef VISCOPLASTIC_CONTACT_HAS_AVX2_KERNELS

@@ -4,7 +4,6 @@
 
 #include <cholmod.h>
 
-
 namespace Viscoplastic
 {
   struct SchurSolver::Factor

@@ -6,7 +6,6 @@
 #include <viscoplastic_contact/base/spelling.h>
 #include <viscoplastic_contact/error/solution_errors.h>
 #include <viscoplastic_contact/error/space_estimator.h>
-#include <viscoplastic_contact/mesh/plane_model.h>
 #include <viscoplastic_contact/results/boundary_fields.h>
 #include <viscoplastic_contact/results/line_output.h>
 #include <viscoplastic_contact/results/output.h>

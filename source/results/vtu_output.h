@@ -19,12 +19,10 @@
 
 namespace Viscoplastic
 {
-  /**
-   * VTU files have single precision. What is beyond its range, and would be
-   * infinite there, becomes its largest number: ParaView cannot scale colors
-   * to infinite values. Returns the data sets where this was needed, by
-   * their indices, and the number of data sets for the coordinates.
-   */
+  /// VTU files have single precision. What is beyond its range, and would be
+  /// infinite there, becomes its largest number: ParaView cannot scale colors
+  /// to infinite values. Returns the data sets where this was needed, by
+  /// their indices, and the number of data sets for the coordinates.
   template <int dim, int spacedim>
   std::set<unsigned int>
   cut_off_infinite(std::vector<DataOutBase::Patch<dim, spacedim>> &patches,
@@ -63,11 +61,9 @@ namespace Viscoplastic
 
 
 
-  /**
-   * Patches with nodal data, in the form that DataOutInterface writes. They
-   * refer to nothing else, so that a thread can write them while the run goes
-   * on.
-   */
+  /// Patches with nodal data, in the form that DataOutInterface writes. They
+  /// refer to nothing else, so that a thread can write them while the run goes
+  /// on.
   template <int patch_dim, int dim>
   class PatchOutput : public DataOutInterface<patch_dim, dim>
   {
@@ -143,13 +139,11 @@ namespace Viscoplastic
 
 
 
-  /**
-   * What becomes of a plane section (x, y) = (r, z) that turns by @p degrees
-   * about the y axis, towards those who look along -z: @p edges, each a patch
-   * of @p section and the number of its face in cells of deal.II, sweep
-   * surfaces, and where these do not close, the section itself is at both ends.
-   * Vectors turn; components of tensors remain those of the section.
-   */
+  /// What becomes of a plane section (x, y) = (r, z) that turns by @p degrees
+  /// about the y axis, towards those who look along -z: @p edges, each a patch
+  /// of @p section and the number of its face in cells of deal.II, sweep
+  /// surfaces, and where these do not close, the section itself is at both
+  /// ends. Vectors turn; components of tensors remain those of the section.
   inline PatchOutput<2, 3>
   revolved(const PatchOutput<2, 2>                                 &section,
            const std::vector<std::pair<std::size_t, unsigned int>> &edges,

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <viscoplastic_contact/time_stepping/implicit_step.h>
 
-
 namespace Viscoplastic
 {
   template <int dim>

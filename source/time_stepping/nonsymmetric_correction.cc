@@ -6,7 +6,6 @@
 #include <viscoplastic_contact/laws/backward_euler.h>
 #include <viscoplastic_contact/time_stepping/nonsymmetric_correction.h>
 
-
 namespace Viscoplastic
 {
   namespace

@@ -9,10 +9,8 @@
 
 namespace Viscoplastic
 {
-  /**
-   * What a mesh does to a quantity of interest on the boundary, which no
-   * residual knows. Made once a mesh; costs nothing where there is none of it.
-   */
+  /// What a mesh does to a quantity of interest on the boundary, which no
+  /// residual knows. Made once a mesh; costs nothing where there is none of it.
   template <int dim>
   class BoundaryDefects
   {
@@ -20,28 +18,25 @@ namespace Viscoplastic
     /// @p discretization stays in use. Collective.
     explicit BoundaryDefects(const Discretization<dim> &discretization);
 
-    /**
-     * What straight sides of cells do where the body is curved, by active cell,
-     * with the dual solution w: over the volume between the sides and the
-     * manifold, and with the loads f where they belong, the equations miss
-     *
-     *     int b . w - sigma : eps(w)  +  int_curved f . w - int_straight f . w.
-     *
-     * Their sum is the error to leading order. Of meshes from files it is zero:
-     * they are the geometry. Empty where no side is curved.
-     */
+    /// What straight sides of cells do where the body is curved, by active
+    /// cell, with the dual solution w: over the volume between the sides and
+    /// the manifold, and with the loads f where they belong, the equations miss
+    ///
+    ///     int b . w - sigma : eps(w)  +  int_curved f . w - int_straight f .
+    ///     w.
+    ///
+    /// Their sum is the error to leading order. Of meshes from files it is
+    /// zero: they are the geometry. Empty where no side is curved.
     Vector<double>
     missing_sides(const State<dim>        &state,
                   const DistributedVector &ghosted_w) const;
 
-    /**
-     * The friction that is missing where other conditions hold nodes on Gamma_3
-     * along a foundation that slides beneath them, by active cell: these have
-     * no friction point in that direction, and what holds them carries their
-     * part of the face. It is the bound times the part of the slip in that
-     * direction, for the work of friction times the slip. Empty where no node
-     * is held. Collective.
-     */
+    /// The friction that is missing where other conditions hold nodes on
+    /// Gamma_3 along a foundation that slides beneath them, by active cell:
+    /// these have no friction point in that direction, and what holds them
+    /// carries their part of the face. It is the bound times the part of the
+    /// slip in that direction, for the work of friction times the slip. Empty
+    /// where no node is held. Collective.
     Vector<double>
     held_friction(const State<dim>         &state,
                   const QuantityOfInterest &quantity,

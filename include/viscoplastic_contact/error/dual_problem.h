@@ -32,40 +32,40 @@ namespace Viscoplastic
   };
 
 
-  /**
-   * The dual problem of a quantity J: how J feels a residual R of the equations
-   * of a step,
-   *
-   *     a(u, v) + (z, eps(v)) + sum_c lambda_c . v_c = L(v) + R(v),
-   *
-   * with the law of friction linearized at a state: points that stick do so,
-   * and the multiplier of a point that slips changes with the direction of its
-   * slip only, d(lambda) = K d(s) with K = rho/|s| across the slip (none in
-   * the plane). The change of J is then
-   *
-   *     J' = sign R(w),   a(w, v) + sum_slipping K w_c . v_c = l(v)
-   *
-   * for all v in V_h that are zero where points stick, where
-   *
-   * - of the displacement of a point, l is its component: sign = 1;
-   * - of a reaction, l = 0, and w is the unit direction on the boundary instead
-   *   of zero: sign = -1;
-   * - of the friction force, l = 0, w is the unit direction at points that
-   *   stick, and w_c less this direction takes the place of w_c at those that
-   *   slip: sign = 1;
-   * - of the contact force likewise, along the normals where contact is closed,
-   *   with K the slope of the pressure where a foundation gives way: sign = 1;
-   *   of both on one boundary, times the part of a point's area that is there;
-   * - of the work of friction in all steps, as long as what slips goes on in
-   * the same direction, l(v) = sum_slipping lambda_c . v_c: sign = 1.
-   *
-   * With Coulomb's law of the step's own pressure, lambda_c of a slipping point
-   * changes with its pressure, too, and the equations of such a point are those
-   * of its tilt (CoulombLaw::tilt()). The dual system is the transposed one: v
-   * still is zero across the foundation there, but w moves into it by mu times
-   * its part along the slip. (Of the work of friction, what the pressure makes
-   * of past slip is left out.)
-   */
+  /// The dual problem of a quantity J: how J feels a residual R of the
+  /// equations of a step,
+  ///
+  ///     a(u, v) + (z, eps(v)) + sum_c lambda_c . v_c = L(v) + R(v),
+  ///
+  /// with the law of friction linearized at a state: points that stick do so,
+  /// and the multiplier of a point that slips changes with the direction of its
+  /// slip only, d(lambda) = K d(s) with K = rho/|s| across the slip (none in
+  /// the plane). The change of J is then
+  ///
+  ///     J' = sign R(w),   a(w, v) + sum_slipping K w_c . v_c = l(v)
+  ///
+  /// for all v in V_h that are zero where points stick, where
+  ///
+  /// - of the displacement of a point, l is its component: sign = 1;
+  /// - of a reaction, l = 0, and w is the unit direction on the boundary
+  /// instead
+  ///   of zero: sign = -1;
+  /// - of the friction force, l = 0, w is the unit direction at points that
+  ///   stick, and w_c less this direction takes the place of w_c at those that
+  ///   slip: sign = 1;
+  /// - of the contact force likewise, along the normals where contact is
+  /// closed,
+  ///   with K the slope of the pressure where a foundation gives way: sign = 1;
+  ///   of both on one boundary, times the part of a point's area that is there;
+  /// - of the work of friction in all steps, as long as what slips goes on in
+  /// the same direction, l(v) = sum_slipping lambda_c . v_c: sign = 1.
+  ///
+  /// With Coulomb's law of the step's own pressure, lambda_c of a slipping
+  /// point changes with its pressure, too, and the equations of such a point
+  /// are those of its tilt (CoulombLaw::tilt()). The dual system is the
+  /// transposed one: v still is zero across the foundation there, but w moves
+  /// into it by mu times its part along the slip. (Of the work of friction,
+  /// what the pressure makes of past slip is left out.)
   template <int dim>
   class DualProblem
   {

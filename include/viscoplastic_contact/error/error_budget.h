@@ -11,13 +11,11 @@ namespace Viscoplastic
 {
   class Parameters;
 
-  /**
-   * How much of the tolerance of a run each cause of errors may use.
-   *
-   * A run costs about e_h^-d e_k^(-1/p) to have the error e_h of the mesh, of
-   * first order, in d dimensions, and e_k of time steps of order p. With their
-   * sum given it costs least where e_k : e_h = 1/p : d.
-   */
+  /// How much of the tolerance of a run each cause of errors may use.
+  ///
+  /// A run costs about e_h^-d e_k^(-1/p) to have the error e_h of the mesh, of
+  /// first order, in d dimensions, and e_k of time steps of order p. With their
+  /// sum given it costs least where e_k : e_h = 1/p : d.
   class ErrorBudget
   {
   public:

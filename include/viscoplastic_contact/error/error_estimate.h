@@ -6,10 +6,8 @@
 
 namespace Viscoplastic
 {
-  /**
-   * The error of a state by its causes, in the energy norm a(.,.)^{1/2} where
-   * nothing else is said.
-   */
+  /// The error of a state by its causes, in the energy norm a(.,.)^{1/2} where
+  /// nothing else is said.
   struct ErrorParts
   {
     /// The error of the mesh, see SpaceEstimator.
@@ -100,9 +98,7 @@ namespace Viscoplastic
 
 
 
-  /**
-   * All that is estimated of a state.
-   */
+  /// All that is estimated of a state.
   struct ErrorEstimate : public ErrorParts
   {
     /// That of `Error control/Quantity'; zero without one.

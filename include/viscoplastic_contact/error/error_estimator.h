@@ -9,16 +9,14 @@
 
 namespace Viscoplastic
 {
-  /**
-   * What a scheme for z' = G leaves out of the integral of G over a step, to
-   * leading order:
-   *
-   *     first k_n (G_n - G_{n-1}) + second k_n^3 G''.
-   *
-   * Schemes of first order have first != 0 and need no more, but for long steps
-   * of backward Euler under laws that are not linear, whose integral of G is
-   * Simpson's. Those of second order have first = 0.
-   */
+  /// What a scheme for z' = G leaves out of the integral of G over a step, to
+  /// leading order:
+  ///
+  ///     first k_n (G_n - G_{n-1}) + second k_n^3 G''.
+  ///
+  /// Schemes of first order have first != 0 and need no more, but for long
+  /// steps of backward Euler under laws that are not linear, whose integral of
+  /// G is Simpson's. Those of second order have first = 0.
   struct TimeDefect
   {
     double first, second;
@@ -30,38 +28,36 @@ namespace Viscoplastic
 
 
 
-  /**
-   * Estimates the error of each state in the energy norm, by its causes, in
-   * scenes with `Error control/Error bar': the mesh, the time steps, the
-   * iterations, the initial data. It keeps nothing of the run; what has added
-   * up is in the states.
-   *
-   * Time: z_n lacks the sum of the defects of all steps. Signed, as tensors at
-   * the samples, they add up to D_n, e.g. for forward Euler
-   * D_n = D_{n-1} + (k_n/2)(G_n - G_{n-1}), and cancel where G returns. Since
-   * a(e_u, v) = -(e_z, eps(v)), the norm (int E^-1 D : D)^{1/2} bounds their
-   * effect on u. That errors of z relax, too, is left out: where the stress
-   * follows from the loads it does not happen. In linear laws that depend on
-   * the strain, what makes no stress fades all the same. Forces feel only what
-   * makes stress, and that relaxes with the law's own tangent in them. History
-   * variables have such a sum of their own; what becomes of it in a step, and
-   * what it does to G meanwhile, is the difference of two steps at the same
-   * stress.
-   *
-   * Friction: slip that turns in a step has the direction of its end. In an
-   * elastic body the error of what is linear between the steps satisfies
-   * a(e, e) <= sum over the steps of rho |s| - lambda . s, with s the slip of a
-   * step and lambda the multiplier at its beginning. Of this sum only what
-   * comes from turning counts (see turning_work()): the slip of a point that
-   * has been at rest, or keeps its direction, is exact at the end of the step.
-   *
-   * Bounds that follow the pressure or the slip rate of the step before: with
-   * bounds that miss Delta rho, (a(e, e)/2)' <= sum Delta rho |s'|, which adds
-   * up.
-   *
-   * Changes of the mesh: what they take from z adds up. So does what cell means
-   * leave out of G.
-   */
+  /// Estimates the error of each state in the energy norm, by its causes, in
+  /// scenes with `Error control/Error bar': the mesh, the time steps, the
+  /// iterations, the initial data. It keeps nothing of the run; what has added
+  /// up is in the states.
+  ///
+  /// Time: z_n lacks the sum of the defects of all steps. Signed, as tensors at
+  /// the samples, they add up to D_n, e.g. for forward Euler
+  /// D_n = D_{n-1} + (k_n/2)(G_n - G_{n-1}), and cancel where G returns. Since
+  /// a(e_u, v) = -(e_z, eps(v)), the norm (int E^-1 D : D)^{1/2} bounds their
+  /// effect on u. That errors of z relax, too, is left out: where the stress
+  /// follows from the loads it does not happen. In linear laws that depend on
+  /// the strain, what makes no stress fades all the same. Forces feel only what
+  /// makes stress, and that relaxes with the law's own tangent in them. History
+  /// variables have such a sum of their own; what becomes of it in a step, and
+  /// what it does to G meanwhile, is the difference of two steps at the same
+  /// stress.
+  ///
+  /// Friction: slip that turns in a step has the direction of its end. In an
+  /// elastic body the error of what is linear between the steps satisfies
+  /// a(e, e) <= sum over the steps of rho |s| - lambda . s, with s the slip of
+  /// a step and lambda the multiplier at its beginning. Of this sum only what
+  /// comes from turning counts (see turning_work()): the slip of a point that
+  /// has been at rest, or keeps its direction, is exact at the end of the step.
+  ///
+  /// Bounds that follow the pressure or the slip rate of the step before: with
+  /// bounds that miss Delta rho, (a(e, e)/2)' <= sum Delta rho |s'|, which adds
+  /// up.
+  ///
+  /// Changes of the mesh: what they take from z adds up. So does what cell
+  /// means leave out of G.
   template <int dim>
   class ErrorEstimator
   {
@@ -102,23 +98,19 @@ namespace Viscoplastic
                 const double                history,
                 EvaluatedState<dim>        &accepted) const;
 
-    /**
-     * The relative tolerance for the iterations of the next step: `Algebraic
-     * fraction' of the estimated discretization error of the accepted state, or
-     * a fixed one if the scene gives it or nothing is known yet.
-     */
+    /// The relative tolerance for the iterations of the next step: `Algebraic
+    /// fraction' of the estimated discretization error of the accepted state,
+    /// or a fixed one if the scene gives it or nothing is known yet.
     double
     tolerance(const ErrorEstimate &accepted) const;
 
-    /**
-     * Set the estimate and the fields of time errors of the end of a step. Its
-     * forces and space estimate, and with viscosity the rates of both states,
-     * have been evaluated. @p defect: of the scheme of the step. @p turning:
-     * the turning_work() of the step; @p missed_work: that of friction bounds
-     * which it has missed (ContactFace::missed_bounds()); @p swing: the
-     * swing_of_data() of the step. @p is_fresh: at its beginning data have a
-     * kink, so that G may have one, too. Collective.
-     */
+    /// Set the estimate and the fields of time errors of the end of a step. Its
+    /// forces and space estimate, and with viscosity the rates of both states,
+    /// have been evaluated. @p defect: of the scheme of the step. @p turning:
+    /// the turning_work() of the step; @p missed_work: that of friction bounds
+    /// which it has missed (ContactFace::missed_bounds()); @p swing: the
+    /// swing_of_data() of the step. @p is_fresh: at its beginning data have a
+    /// kink, so that G may have one, too. Collective.
     void
     assess(const FlowLaws<dim>       &laws,
            const TimeDefect          &defect,

@@ -12,10 +12,8 @@
 
 namespace Viscoplastic
 {
-  /**
-   * A state with what has been evaluated of it. A step leads from one of these,
-   * which it leaves alone, to another one.
-   */
+  /// A state with what has been evaluated of it. A step leads from one of
+  /// these, which it leaves alone, to another one.
   template <int dim>
   struct EvaluatedState
   {

@@ -7,23 +7,21 @@
 
 namespace Viscoplastic
 {
-  /**
-   * z and sigma as cells should pass them on to their children.
-   *
-   * In a bilinear displacement a strain varies across its own direction only,
-   * and the history follows it: between cells z jumps by what is missing.
-   * Children that inherit these jumps keep them, since what has crept stays,
-   * and no mesh mends that; they would be refined along the edges of cells that
-   * have long gone. But means of cells are more accurate than what varies
-   * within them, so that the slopes of z in a cell follow from the means of its
-   * neighbors in the same material, by least squares. The mean of a cell stays,
-   * and so does a slope in whose direction there is no neighbor.
-   *
-   * sigma goes the same way, but by |sigma|/|z| only where that is less than
-   * one: in long creep the stress has relaxed to what makes strains of the
-   * present mesh flow, and one that is smoother would begin with a fast
-   * transient.
-   */
+  /// z and sigma as cells should pass them on to their children.
+  ///
+  /// In a bilinear displacement a strain varies across its own direction only,
+  /// and the history follows it: between cells z jumps by what is missing.
+  /// Children that inherit these jumps keep them, since what has crept stays,
+  /// and no mesh mends that; they would be refined along the edges of cells
+  /// that have long gone. But means of cells are more accurate than what varies
+  /// within them, so that the slopes of z in a cell follow from the means of
+  /// its neighbors in the same material, by least squares. The mean of a cell
+  /// stays, and so does a slope in whose direction there is no neighbor.
+  ///
+  /// sigma goes the same way, but by |sigma|/|z| only where that is less than
+  /// one: in long creep the stress has relaxed to what makes strains of the
+  /// present mesh flow, and one that is smoother would begin with a fast
+  /// transient.
   struct HistoryReconstruction
   {
     /// At the samples of all owned cells, or of cell means at the centers of

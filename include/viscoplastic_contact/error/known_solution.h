@@ -10,11 +10,9 @@
 
 namespace Viscoplastic
 {
-  /**
-   * What a scene knows of its solution: the exact one, or a reference that a
-   * finer run has left at the ends of the phases of `Time/Phases'; and what it
-   * leaves for coarser runs.
-   */
+  /// What a scene knows of its solution: the exact one, or a reference that a
+  /// finer run has left at the ends of the phases of `Time/Phases'; and what it
+  /// leaves for coarser runs.
   template <int dim>
   class KnownSolution
   {

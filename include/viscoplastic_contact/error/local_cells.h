@@ -11,12 +11,10 @@
 
 namespace Viscoplastic
 {
-  /**
-   * What estimators of the error in space need of a mesh: the shape functions
-   * of V_h in all cells of this rank and its ghosts. Cells that differ by a
-   * translation share them, in bodies of revolution by one along the axis, so
-   * that a step evaluates no finite elements.
-   */
+  /// What estimators of the error in space need of a mesh: the shape functions
+  /// of V_h in all cells of this rank and its ghosts. Cells that differ by a
+  /// translation share them, in bodies of revolution by one along the axis, so
+  /// that a step evaluates no finite elements.
   template <int dim>
   class LocalCells
   {

@@ -7,15 +7,13 @@
 
 namespace Viscoplastic
 {
-  /**
-   * What z loses when the cells that are marked are coarsened,
-   *
-   *     ( int E^-1 (z - z_H) : (z - z_H) )^{1/2},
-   *
-   * with z_H its projection to the coarser cells. It bounds what that does to
-   * the error of u in the energy norm, a(e, v) = -(z - z_H, eps(v)). Refined
-   * cells lose nothing. Zero without z. Collective.
-   */
+  /// What z loses when the cells that are marked are coarsened,
+  ///
+  ///     ( int E^-1 (z - z_H) : (z - z_H) )^{1/2},
+  ///
+  /// with z_H its projection to the coarser cells. It bounds what that does to
+  /// the error of u in the energy norm, a(e, v) = -(z - z_H, eps(v)). Refined
+  /// cells lose nothing. Zero without z. Collective.
   template <int dim>
   double
   memory_loss(const parallel::distributed::Triangulation<dim> &triangulation,

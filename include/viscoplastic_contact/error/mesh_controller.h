@@ -11,12 +11,10 @@
 
 namespace Viscoplastic
 {
-  /**
-   * Decides when the mesh of a run changes, and marks its cells: every so many
-   * steps by fractions of the estimate, or, in a run to a tolerance, where the
-   * error of the mesh leaves its share of the budget. Whoever changes the mesh
-   * carries the state over.
-   */
+  /// Decides when the mesh of a run changes, and marks its cells: every so many
+  /// steps by fractions of the estimate, or, in a run to a tolerance, where the
+  /// error of the mesh leaves its share of the budget. Whoever changes the mesh
+  /// carries the state over.
   template <int dim>
   class MeshController
   {

@@ -12,54 +12,52 @@
 
 namespace Viscoplastic
 {
-  /**
-   * Estimates the error of a quantity J of interest at the end of each step, on
-   * one mesh. With the residual R of the state and the solution w of the dual
-   * problem (DualProblem),
-   *
-   *     J(u) - J(u_h) = sign R(w - w_h) + sign R_z(w),
-   *
-   * where R_z is the residual that errors of z make:
-   *
-   * - mesh: R(w - w_h) is a(e_u, e_w), with e the errors of both problems, of
-   *   which ResidualEstimator::multiply() tells the part of each cell. Their
-   *   sum is the estimate, safety times that is what counts as error, and their
-   *   sizes are the indicators by which meshes are refined.
-   * - mesh, in what has crept: rates that have been wrong for long have moved
-   *   the body, which the residual of its present stress does not know. What
-   *   has crept is T G with the present G and its path T |G|
-   *   (ErrorEstimate::creep_time): one step T of backward Euler, whose stress
-   *   S(eps(u)) has the tangents C. A force is the work of its stress on any
-   *   displacement that is 1 where it acts and 0 where others do, also on the
-   *   solution w_h of the dual problem of C, so that
-   *
-   *       |J(u) - J(u_h)| = |int (S(eps(u)) - S(eps(u_h))) : eps(w_h)|
-   *                       = |int (e_u : C e_w - r(e_u) : C eps(w_h))|
-   *
-   *   with the remainder r of RecoveryEstimator::multiply(); points likewise.
-   *   The larger of this and of a(e_u, e_w) counts. T is t under steady loads,
-   *   less while they grow, and has no bound where stress relaxes: C and what
-   *   forces remember fade as it does.
-   * - the boundary: BoundaryDefects, which R does not know.
-   * - time steps: R_z(w) = -(D, eps(w)) with the sum D of the defects of all
-   *   steps (see ErrorEstimator).
-   * - slip that turns or comes to rest within a step is wrong by defects d_c
-   *   (SlipDefects), and the quantity by sum_c f_c . d_c with the force f_c
-   *   that holds w at the point. Steps add up without signs, and so do points
-   *   that come to rest. Of turns, which full slip forgets, no more counts than
-   *   their energy norm times a(w, w)^{1/2}.
-   * - everything else is known by its norm: bounds that lag and the iterations
-   *   by a(w, w)^{1/2}; initial data, changes of the mesh and the history,
-   *   which are orthogonal to what is constant in cells, by the error of w.
-   *
-   * The work of friction, int rho |s'|, is sum rho_c |s_c| with s_c the slip
-   * since point c has begun to slip: its error is that of J(u) at the end of a
-   * step, and what it was, for points that have come to rest since, when they
-   * did. That share of it is settled (settled_space, settled_time), and so is
-   * -d(rho)/rho of it where bounds change, by parts. The bounds
-   * at the ends of steps, in place of those in between, make a quadrature error
-   * -1/2 (rho_n - rho_{n-1}) |s| of known sign, settled at once.
-   */
+  /// Estimates the error of a quantity J of interest at the end of each step,
+  /// on one mesh. With the residual R of the state and the solution w of the
+  /// dual problem (DualProblem),
+  ///
+  ///     J(u) - J(u_h) = sign R(w - w_h) + sign R_z(w),
+  ///
+  /// where R_z is the residual that errors of z make:
+  ///
+  /// - mesh: R(w - w_h) is a(e_u, e_w), with e the errors of both problems, of
+  ///   which ResidualEstimator::multiply() tells the part of each cell. Their
+  ///   sum is the estimate, safety times that is what counts as error, and
+  ///   their sizes are the indicators by which meshes are refined.
+  /// - mesh, in what has crept: rates that have been wrong for long have moved
+  ///   the body, which the residual of its present stress does not know. What
+  ///   has crept is T G with the present G and its path T |G|
+  ///   (ErrorEstimate::creep_time): one step T of backward Euler, whose stress
+  ///   S(eps(u)) has the tangents C. A force is the work of its stress on any
+  ///   displacement that is 1 where it acts and 0 where others do, also on the
+  ///   solution w_h of the dual problem of C, so that
+  ///
+  ///       |J(u) - J(u_h)| = |int (S(eps(u)) - S(eps(u_h))) : eps(w_h)|
+  ///                       = |int (e_u : C e_w - r(e_u) : C eps(w_h))|
+  ///
+  ///   with the remainder r of RecoveryEstimator::multiply(); points likewise.
+  ///   The larger of this and of a(e_u, e_w) counts. T is t under steady loads,
+  ///   less while they grow, and has no bound where stress relaxes: C and what
+  ///   forces remember fade as it does.
+  /// - the boundary: BoundaryDefects, which R does not know.
+  /// - time steps: R_z(w) = -(D, eps(w)) with the sum D of the defects of all
+  ///   steps (see ErrorEstimator).
+  /// - slip that turns or comes to rest within a step is wrong by defects d_c
+  ///   (SlipDefects), and the quantity by sum_c f_c . d_c with the force f_c
+  ///   that holds w at the point. Steps add up without signs, and so do points
+  ///   that come to rest. Of turns, which full slip forgets, no more counts
+  ///   than their energy norm times a(w, w)^{1/2}.
+  /// - everything else is known by its norm: bounds that lag and the iterations
+  ///   by a(w, w)^{1/2}; initial data, changes of the mesh and the history,
+  ///   which are orthogonal to what is constant in cells, by the error of w.
+  ///
+  /// The work of friction, int rho |s'|, is sum rho_c |s_c| with s_c the slip
+  /// since point c has begun to slip: its error is that of J(u) at the end of a
+  /// step, and what it was, for points that have come to rest since, when they
+  /// did. That share of it is settled (settled_space, settled_time), and so is
+  /// -d(rho)/rho of it where bounds change, by parts. The bounds
+  /// at the ends of steps, in place of those in between, make a quadrature
+  /// error -1/2 (rho_n - rho_{n-1}) |s| of known sign, settled at once.
   template <int dim>
   class QuantityEstimator
   {

@@ -12,29 +12,27 @@
 
 namespace Viscoplastic
 {
-  /**
-   * The estimate of Zienkiewicz and Zhu: how far the strain eps_h of u_h is
-   * from a continuous one, eps*, whose values at the nodes are means of the
-   * cells around them, weighted by volume (materials apart),
-   *
-   *     eta_K^2 = int_K (eps* - eps_h) : E (eps* - eps_h).
-   *
-   * In a body that creeps the strain holds, other than the stress, what all
-   * steps have left out: it grows with the error of the rates. No bound, and
-   * blind to what goes on in the law of friction; but without a constant, and
-   * exact in the limit where solutions are smooth and meshes regular. Cells of
-   * absent materials count for nothing.
-   *
-   * At singular points means around nodes miss most of it: of strains like
-   * r^(beta), beta > -dim/2, the scales below the cell hold a part that has no
-   * bound as beta tends to -dim/2, as it does at the corners of bodies that
-   * creep by a power law. A self-similar strain tells it. What it varies by
-   * between the cells of a patch twice as large as the cell K at its singular
-   * corner, D, and the errors S of the others there, return within K at each
-   * scale times the share q that K has of the energy of means in the patch:
-   *
-   *     eta_K^2 = (q + q^2 + ...) (D + S),   q = 2^(-2 beta - dim).
-   */
+  /// The estimate of Zienkiewicz and Zhu: how far the strain eps_h of u_h is
+  /// from a continuous one, eps*, whose values at the nodes are means of the
+  /// cells around them, weighted by volume (materials apart),
+  ///
+  ///     eta_K^2 = int_K (eps* - eps_h) : E (eps* - eps_h).
+  ///
+  /// In a body that creeps the strain holds, other than the stress, what all
+  /// steps have left out: it grows with the error of the rates. No bound, and
+  /// blind to what goes on in the law of friction; but without a constant, and
+  /// exact in the limit where solutions are smooth and meshes regular. Cells of
+  /// absent materials count for nothing.
+  ///
+  /// At singular points means around nodes miss most of it: of strains like
+  /// r^(beta), beta > -dim/2, the scales below the cell hold a part that has no
+  /// bound as beta tends to -dim/2, as it does at the corners of bodies that
+  /// creep by a power law. A self-similar strain tells it. What it varies by
+  /// between the cells of a patch twice as large as the cell K at its singular
+  /// corner, D, and the errors S of the others there, return within K at each
+  /// scale times the share q that K has of the energy of means in the patch:
+  ///
+  ///     eta_K^2 = (q + q^2 + ...) (D + S),   q = 2^(-2 beta - dim).
   template <int dim>
   class RecoveryEstimator
   {
@@ -64,32 +62,30 @@ namespace Viscoplastic
     Vector<double>
     estimate(const DistributedVector &u, double *deviatoric = nullptr) const;
 
-    /**
-     * a(e_u, e_w) by active cell in the form of the tangents C, of the strain
-     * errors of a displacement and a dual solution with their signs; arguments
-     * and result as of estimate().
-     *
-     *     int e_u : C e_w - int r(e_u) : C eps(w_h)
-     *
-     * since u_h solves the equations of the law and not those of its tangents:
-     * its error is a-orthogonal to w_h but for the remainder r of the law,
-     * which is of the order of the first term. Its sign is that of tangents at
-     * the solution u, not at u_h: they are smooth, and so is the w that eps* of
-     * w_h is close to.
-     *
-     * Signs leave little of the sum, so that two things count here that do not
-     * in squares. Means at a boundary miss half of what a strain varies by in a
-     * cell: eps* is extrapolated there, so that linear strains on boxes are met
-     * everywhere; but not from cells where is_curved(), as at the corners of
-     * clamped boundaries, whose product it would take away. And under mean
-     * dilatation pressures do work on what div u_h and div w_h vary by in
-     * cells, delta:
-     *
-     *     - int e_u : C I delta_w/3 - int e_w : C I delta_u/3,
-     *
-     * from the mixed form of displacement and pressure, which that method is.
-     * Collective.
-     */
+    /// a(e_u, e_w) by active cell in the form of the tangents C, of the strain
+    /// errors of a displacement and a dual solution with their signs; arguments
+    /// and result as of estimate().
+    ///
+    ///     int e_u : C e_w - int r(e_u) : C eps(w_h)
+    ///
+    /// since u_h solves the equations of the law and not those of its tangents:
+    /// its error is a-orthogonal to w_h but for the remainder r of the law,
+    /// which is of the order of the first term. Its sign is that of tangents at
+    /// the solution u, not at u_h: they are smooth, and so is the w that eps*
+    /// of w_h is close to.
+    ///
+    /// Signs leave little of the sum, so that two things count here that do not
+    /// in squares. Means at a boundary miss half of what a strain varies by in
+    /// a cell: eps* is extrapolated there, so that linear strains on boxes are
+    /// met everywhere; but not from cells where is_curved(), as at the corners
+    /// of clamped boundaries, whose product it would take away. And under mean
+    /// dilatation pressures do work on what div u_h and div w_h vary by in
+    /// cells, delta:
+    ///
+    ///     - int e_u : C I delta_w/3 - int e_w : C I delta_u/3,
+    ///
+    /// from the mixed form of displacement and pressure, which that method is.
+    /// Collective.
     Vector<double>
     multiply(const DistributedVector &u,
              const DistributedVector &w,

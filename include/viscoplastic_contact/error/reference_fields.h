@@ -9,11 +9,9 @@
 
 namespace Viscoplastic
 {
-  /**
-   * The fields of one state at the centers of its cells, free of the mesh: a
-   * stand-in for the exact solution that runs on other meshes, with other time
-   * steps and on other numbers of ranks compare themselves with.
-   */
+  /// The fields of one state at the centers of its cells, free of the mesh: a
+  /// stand-in for the exact solution that runs on other meshes, with other time
+  /// steps and on other numbers of ranks compare themselves with.
   template <int dim>
   struct FieldSamples
   {
@@ -61,12 +59,10 @@ namespace Viscoplastic
   FieldSamples<dim>
   read_samples(const std::string &file, const MPI_Comm communicator);
 
-  /**
-   * As solution_errors(), against samples of a finer run at the same time,
-   * by the quadrature of that run; `exact' are its norms. There is no memory
-   * error. Samples outside of this mesh (at curved boundaries) do not count.
-   * Collective.
-   */
+  /// As solution_errors(), against samples of a finer run at the same time,
+  /// by the quadrature of that run; `exact' are its norms. There is no memory
+  /// error. Samples outside of this mesh (at curved boundaries) do not count.
+  /// Collective.
   template <int dim>
   SolutionErrors
   differences(const FieldSamples<dim> &reference,

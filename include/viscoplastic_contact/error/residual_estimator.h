@@ -12,52 +12,52 @@
 
 namespace Viscoplastic
 {
-  /**
-   * The residual estimator for the inequality of one step,
-   *
-   *     eta_K^2 = sum_e 1/24 h (r, M^-1 r)_e   interior faces, r = [sigma_h nu]
-   *               + 1/6 h (r, M^-1 r)_e        boundary,
-   *               r = F - sigma_h nu on Gamma_2,
-   *               r = lambda_h + (sigma_h nu)_tau, S - sigma_nu on Gamma_3,
-   *
-   * with the width h of the cell across the face, the acoustic tensor
-   * M = nu . E . nu, sigma_h = E eps(u_h) + z_h and z_h the cell means of z.
-   * For smooth solutions on meshes of equal boxes that is the squared error to
-   * leading order: the error is -x (h - x)/2 times the second derivative in
-   * each direction then, whose stress jumps by h between cells and misses the
-   * data by h/2. What is amiss within the cells, b + div sigma_h, says the same
-   * once more (Carstensen and Verfuerth, Edge Residuals Dominate A Posteriori
-   * Error Estimates for Low Order Finite Element Methods, 1999), but for what b
-   * varies by within a cell, which is of second order, and does not count.
-   *
-   * On Gamma_3 the normal part appears where the normal stress is given. Where
-   * only some components of u are prescribed, the residual of the others counts
-   * with F = 0 (symmetry: the tangential ones).
-   *
-   * The terms of complementarity and of violated bounds are zero at the nodes:
-   * the contact solver's multipliers satisfy the laws of contact to rounding.
-   * Between nodes the density exceeds a bound that jumps, which counts.
-   *
-   * Where contact opens, the whole traction is compared with the density, and
-   * off_the_law() counts besides, like a traction: u_nu - g and the density
-   * between the nodes are not those of one state of the foundation. Such
-   * tractions have no direction of their own, and 1/mu for M^-1.
-   *
-   * Two bodies have r = lambda_h + sigma_h nu on both sides, also of what is
-   * glued: where meshes match, with lambda_h halfway between both tractions,
-   * these two are what an interior face has. off_the_interface() counts
-   * besides.
-   *
-   * The estimate bounds the error of one step for given z; the error that has
-   * accumulated in z is not part of it. An initial stress, which may vary in
-   * cells and balance the loads there, is taken as it is, and not as the cell
-   * means that z holds of it; so is the thermal stress. Cells of absent
-   * materials count for nothing, and faces towards them as free ones of
-   * Gamma_2.
-   *
-   * What depends on the mesh alone is kept from step to step, as are data that
-   * do not depend on time.
-   */
+  /// The residual estimator for the inequality of one step,
+  ///
+  ///     eta_K^2 = sum_e 1/24 h (r, M^-1 r)_e   interior faces, r = [sigma_h
+  ///     nu]
+  ///               + 1/6 h (r, M^-1 r)_e        boundary,
+  ///               r = F - sigma_h nu on Gamma_2,
+  ///               r = lambda_h + (sigma_h nu)_tau, S - sigma_nu on Gamma_3,
+  ///
+  /// with the width h of the cell across the face, the acoustic tensor
+  /// M = nu . E . nu, sigma_h = E eps(u_h) + z_h and z_h the cell means of z.
+  /// For smooth solutions on meshes of equal boxes that is the squared error to
+  /// leading order: the error is -x (h - x)/2 times the second derivative in
+  /// each direction then, whose stress jumps by h between cells and misses the
+  /// data by h/2. What is amiss within the cells, b + div sigma_h, says the
+  /// same once more (Carstensen and Verfuerth, Edge Residuals Dominate A
+  /// Posteriori Error Estimates for Low Order Finite Element Methods, 1999),
+  /// but for what b varies by within a cell, which is of second order, and does
+  /// not count.
+  ///
+  /// On Gamma_3 the normal part appears where the normal stress is given. Where
+  /// only some components of u are prescribed, the residual of the others
+  /// counts with F = 0 (symmetry: the tangential ones).
+  ///
+  /// The terms of complementarity and of violated bounds are zero at the nodes:
+  /// the contact solver's multipliers satisfy the laws of contact to rounding.
+  /// Between nodes the density exceeds a bound that jumps, which counts.
+  ///
+  /// Where contact opens, the whole traction is compared with the density, and
+  /// off_the_law() counts besides, like a traction: u_nu - g and the density
+  /// between the nodes are not those of one state of the foundation. Such
+  /// tractions have no direction of their own, and 1/mu for M^-1.
+  ///
+  /// Two bodies have r = lambda_h + sigma_h nu on both sides, also of what is
+  /// glued: where meshes match, with lambda_h halfway between both tractions,
+  /// these two are what an interior face has. off_the_interface() counts
+  /// besides.
+  ///
+  /// The estimate bounds the error of one step for given z; the error that has
+  /// accumulated in z is not part of it. An initial stress, which may vary in
+  /// cells and balance the loads there, is taken as it is, and not as the cell
+  /// means that z holds of it; so is the thermal stress. Cells of absent
+  /// materials count for nothing, and faces towards them as free ones of
+  /// Gamma_2.
+  ///
+  /// What depends on the mesh alone is kept from step to step, as are data that
+  /// do not depend on time.
   template <int dim>
   class ResidualEstimator
   {
@@ -93,17 +93,15 @@ namespace Viscoplastic
     Vector<double>
     estimate(const Fields &fields) const;
 
-    /**
-     * What the shapes of curved bodies that touch each other miss of their
-     * geometry, as squared errors by active cell like those of estimate(). The
-     * surfaces in contact, SurfaceFace::bulge(), are off those of the manifold
-     * by delta in the middle of a face, and so is the gap where they touch: as
-     * of prescribed displacements that are wrong by as much,
-     *
-     *     eta_K^2 = sum_e 1/6 h (2 k^2 delta^2/2 mu)_e,   k = 2 mu/h_e.
-     *
-     * Bodies that do not touch, but may within delta, count by the rest.
-     */
+    /// What the shapes of curved bodies that touch each other miss of their
+    /// geometry, as squared errors by active cell like those of estimate(). The
+    /// surfaces in contact, SurfaceFace::bulge(), are off those of the manifold
+    /// by delta in the middle of a face, and so is the gap where they touch: as
+    /// of prescribed displacements that are wrong by as much,
+    ///
+    ///     eta_K^2 = sum_e 1/6 h (2 k^2 delta^2/2 mu)_e,   k = 2 mu/h_e.
+    ///
+    /// Bodies that do not touch, but may within delta, count by the rest.
     Vector<double>
     estimate_geometry(const Fields &fields) const;
 
@@ -121,15 +119,13 @@ namespace Viscoplastic
       Vector<double> of_both, of_dual;
     };
 
-    /**
-     * The products of the errors of two solutions, with their signs,
-     *
-     *     a(e_u, e_w)_K = sum_e 1/24 h (r_u, M^-1 r_w)_e + 1/6 h (r_u, M^-1
-     * r_w)_e,
-     *
-     * from the residuals r of both as above. No bound: for products of
-     * errors, which have signs. Collective.
-     */
+    /// The products of the errors of two solutions, with their signs,
+    ///
+    ///     a(e_u, e_w)_K = sum_e 1/24 h (r_u, M^-1 r_w)_e + 1/6 h (r_u, M^-1
+    /// r_w)_e,
+    ///
+    /// from the residuals r of both as above. No bound: for products of
+    /// errors, which have signs. Collective.
     Products
     multiply(const Fields &state, const Fields &dual) const;
 
@@ -254,17 +250,15 @@ namespace Viscoplastic
                        const Fields         &fields,
                        const Tensor<1, dim> *tractions) const;
 
-    /**
-     * How far the penetration w = u_nu - g and the pressure p at a point of a
-     * face are from each other by the law of the foundation,
-     *
-     *     min(k |w - w(p)|, |p - p(w)|),   k = 2 mu/h_e,
-     *
-     * in stress: as if the body closed a gap, or left a penetration, like a
-     * spring, or felt another pressure, whichever is less. For a rigid
-     * foundation w(p) = 0, or any w <= 0 without pressure, and p(w) = 0 where
-     * it does not touch: k w of what penetrates, min(k g, p) of a gap.
-     */
+    /// How far the penetration w = u_nu - g and the pressure p at a point of a
+    /// face are from each other by the law of the foundation,
+    ///
+    ///     min(k |w - w(p)|, |p - p(w)|),   k = 2 mu/h_e,
+    ///
+    /// in stress: as if the body closed a gap, or left a penetration, like a
+    /// spring, or felt another pressure, whichever is less. For a rigid
+    /// foundation w(p) = 0, or any w <= 0 without pressure, and p(w) = 0 where
+    /// it does not touch: k w of what penetrates, min(k g, p) of a gap.
     double
     off_the_law(const BoundaryFace &face,
                 const unsigned int  q,
@@ -272,14 +266,12 @@ namespace Viscoplastic
                 const double        w,
                 const double        p) const;
 
-    /**
-     * What is amiss with displacements at a point of an interface, in stress:
-     * off_the_law() of contact that opens, and k |delta|, delta being what the
-     * jump between the bodies has beyond the interpolated one of the nodes,
-     * which alone obeys the laws of contact: of meshes that do not match. Its
-     * tangential part says nothing beyond the traction there. k is that of both
-     * bodies one after the other.
-     */
+    /// What is amiss with displacements at a point of an interface, in stress:
+    /// off_the_law() of contact that opens, and k |delta|, delta being what the
+    /// jump between the bodies has beyond the interpolated one of the nodes,
+    /// which alone obeys the laws of contact: of meshes that do not match. Its
+    /// tangential part says nothing beyond the traction there. k is that of
+    /// both bodies one after the other.
     double
     off_the_interface(const BoundaryFace   &face,
                       const unsigned int    q,

@@ -29,26 +29,22 @@ namespace Viscoplastic
   SolutionNorms
   square_roots(const SolutionNorms &squares, const MPI_Comm communicator);
 
-  /**
-   * The errors by quadrature with three points in each direction, without the
-   * recovery's. Norms of stress, multiplier and memory stay zero where the
-   * solution has no stress. @p multiplier_density is null without contact
-   * points. Collective.
-   */
+  /// The errors by quadrature with three points in each direction, without the
+  /// recovery's. Norms of stress, multiplier and memory stay zero where the
+  /// solution has no stress. @p multiplier_density is null without contact
+  /// points. Collective.
   template <int dim>
   SolutionErrors
   solution_errors(const StressSpace<dim>  &stress_space,
                   const State<dim>        &state,
                   const DistributedVector *multiplier_density);
 
-  /**
-   * Hold the exact solution against the scene whose data it makes: what is
-   * prescribed on clamped, symmetry and contact pieces, the friction law on
-   * Gamma_3, and whether its rates exist. At the times of some 20 steps.
-   *
-   * Throws ExcMessage naming boundary, place, time and what is violated.
-   * Collective: a rank that finds nothing wrong does not wait for others.
-   */
+  /// Hold the exact solution against the scene whose data it makes: what is
+  /// prescribed on clamped, symmetry and contact pieces, the friction law on
+  /// Gamma_3, and whether its rates exist. At the times of some 20 steps.
+  ///
+  /// Throws ExcMessage naming boundary, place, time and what is violated.
+  /// Collective: a rank that finds nothing wrong does not wait for others.
   template <int dim>
   void
   check_exact_solution(const AdmissibleSpace<dim> &space);

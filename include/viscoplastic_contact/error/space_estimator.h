@@ -31,16 +31,14 @@ namespace Viscoplastic
 
 
 
-  /**
-   * Makes the estimates that a scene asks for on one mesh: that of the error,
-   * also for refinement, and Kelly's for refinement.
-   *
-   * The squared error of a cell is the larger of the residual estimate, which
-   * knows loads and contact, and of the recovery
-   * estimate, which knows what creep has made of earlier errors. That of a
-   * residual is one of a single step for given z: in long creep it is a
-   * fraction of the error, since displacements grow and residuals do not.
-   */
+  /// Makes the estimates that a scene asks for on one mesh: that of the error,
+  /// also for refinement, and Kelly's for refinement.
+  ///
+  /// The squared error of a cell is the larger of the residual estimate, which
+  /// knows loads and contact, and of the recovery
+  /// estimate, which knows what creep has made of earlier errors. That of a
+  /// residual is one of a single step for given z: in long creep it is a
+  /// fraction of the error, since displacements grow and residuals do not.
   template <int dim>
   class SpaceEstimator
   {

@@ -15,25 +15,23 @@
 
 namespace Viscoplastic
 {
-  /**
-   * Carries a state over a change of the mesh and to the ranks that own the new
-   * cells:
-   *
-   * - displacements and multiplier density by interpolation;
-   * - z and the other fields at samples by an L2 projection that conserves int
-   * z over every cell that is refined or coarsened. Samples on the children of
-   * a cell are values of the polynomial through the parent's samples: a copy of
-   * cell means, the (bi-, tri-)linear interpolant of quadrature points. With
-   * viscosity, z and sigma_h of children have slopes that fit to the neighbors
-   * (see HistoryReconstruction).
-   *
-   * Equilibrium is restored by the next step, which solves for the total
-   * displacement.
-   *
-   * Construct it when the cells are marked, change the mesh, distribute the
-   * degrees of freedom, then unpack(). Keeps copies of what it carries, but
-   * addresses the DoFHandler of @p old_stress_space until unpack().
-   */
+  /// Carries a state over a change of the mesh and to the ranks that own the
+  /// new cells:
+  ///
+  /// - displacements and multiplier density by interpolation;
+  /// - z and the other fields at samples by an L2 projection that conserves int
+  /// z over every cell that is refined or coarsened. Samples on the children of
+  /// a cell are values of the polynomial through the parent's samples: a copy
+  /// of cell means, the (bi-, tri-)linear interpolant of quadrature points.
+  /// With viscosity, z and sigma_h of children have slopes that fit to the
+  /// neighbors (see HistoryReconstruction).
+  ///
+  /// Equilibrium is restored by the next step, which solves for the total
+  /// displacement.
+  ///
+  /// Construct it when the cells are marked, change the mesh, distribute the
+  /// degrees of freedom, then unpack(). Keeps copies of what it carries, but
+  /// addresses the DoFHandler of @p old_stress_space until unpack().
   template <int dim>
   class StateTransfer
   {
@@ -110,15 +108,13 @@ namespace Viscoplastic
   };
 
 
-  /**
-   * Make up for what the mesh has done to strains in a state that has come to
-   * it. E eps(u), z and sigma, each carried by itself, miss E eps(u) + z =
-   * sigma: new vertices of curved cells are not where displacements were
-   * interpolated, and u moves when it is brought into equilibrium. Left to the
-   * stress alone, a thousandth of the strain of long creep would be a stress
-   * beyond all others. In each cell z takes its share |z|/(|z| + |sigma|) of
-   * the deviator. @p stress: what has been carried over.
-   */
+  /// Make up for what the mesh has done to strains in a state that has come to
+  /// it. E eps(u), z and sigma, each carried by itself, miss E eps(u) + z =
+  /// sigma: new vertices of curved cells are not where displacements were
+  /// interpolated, and u moves when it is brought into equilibrium. Left to the
+  /// stress alone, a thousandth of the strain of long creep would be a stress
+  /// beyond all others. In each cell z takes its share |z|/(|z| + |sigma|) of
+  /// the deviator. @p stress: what has been carried over.
   template <int dim>
   void
   share_mismatch(const StressSpace<dim>   &stress_space,
@@ -126,11 +122,9 @@ namespace Viscoplastic
                  State<dim>               &state);
 
 
-  /**
-   * The contact state that a StateTransfer has brought to a new mesh: the
-   * multipliers from their density, within the bounds, and the sets by what
-   * multipliers and velocities say. Collective.
-   */
+  /// The contact state that a StateTransfer has brought to a new mesh: the
+  /// multipliers from their density, within the bounds, and the sets by what
+  /// multipliers and velocities say. Collective.
   template <int dim>
   ContactState
   contact_on_new_mesh(const Discretization<dim> &discretization,

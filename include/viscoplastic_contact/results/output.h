@@ -19,21 +19,17 @@ namespace Viscoplastic
   template <int patch_dim, int dim>
   class PatchOutput;
 
-  /**
-   * Results in one directory: fields of the body (solution.pvd; revolved.pvd of
-   * one of revolution) and of Gamma_3 (contact.pvd; opposite.pvd on other
-   * bodies) as VTU series, and what is needed to reproduce the run
-   * (parameters.prm, run.json).
-   */
+  /// Results in one directory: fields of the body (solution.pvd; revolved.pvd
+  /// of one of revolution) and of Gamma_3 (contact.pvd; opposite.pvd on other
+  /// bodies) as VTU series, and what is needed to reproduce the run
+  /// (parameters.prm, run.json).
   template <int dim>
   class Output
   {
   public:
-    /**
-     * Makes the directory and writes the record of the run. Collective. Throws
-     * ExcMessage if the directory cannot be written, or has files of somebody
-     * else under the names of results.
-     */
+    /// Makes the directory and writes the record of the run. Collective. Throws
+    /// ExcMessage if the directory cannot be written, or has files of somebody
+    /// else under the names of results.
     Output(const Scene<dim> &scene, const MPI_Comm communicator);
 
     /// Go on after the outputs at the times @p earlier: the series list these
@@ -64,14 +60,12 @@ namespace Viscoplastic
     bool
     is_due(const TimeStep &step) const;
 
-    /**
-     * Write the fields of a state, those of `Output/Additional fields' among
-     * them. @p face is null without contact points,
-     * @p squared_estimate without an estimator. Returns sentences about fields
-     * that are beyond the range of the files for the first time. On one rank
-     * files are written by a thread of its own while the run goes on, one
-     * output at a time. Collective.
-     */
+    /// Write the fields of a state, those of `Output/Additional fields' among
+    /// them. @p face is null without contact points,
+    /// @p squared_estimate without an estimator. Returns sentences about fields
+    /// that are beyond the range of the files for the first time. On one rank
+    /// files are written by a thread of its own while the run goes on, one
+    /// output at a time. Collective.
     std::vector<std::string>
     write_fields(const FlowLaws<dim>    &laws,
                  const State<dim>       &state,

@@ -23,11 +23,9 @@
 
 namespace Viscoplastic
 {
-  /**
-   * What is simulated: the body, its material, the roles of its boundary, the
-   * loads and the time steps, as functions of x and t and free of any
-   * discretization. The members that a scene does not need are empty.
-   */
+  /// What is simulated: the body, its material, the roles of its boundary, the
+  /// loads and the time steps, as functions of x and t and free of any
+  /// discretization. The members that a scene does not need are empty.
   template <int dim>
   class Scene
   {
@@ -35,12 +33,10 @@ namespace Viscoplastic
     /// Throws ExcMessage with a sentence for the user.
     explicit Scene(const Parameters &parameters);
 
-    /**
-     * Hold the roles and materials against the mesh: each boundary id has a
-     * role and exists, symmetry and contact pieces are flat (sets their
-     * normals), each material id has a material. Makes the materials that the
-     * mesh has. Collective.
-     */
+    /// Hold the roles and materials against the mesh: each boundary id has a
+    /// role and exists, symmetry and contact pieces are flat (sets their
+    /// normals), each material id has a material. Makes the materials that the
+    /// mesh has. Collective.
     void
     inspect(const parallel::distributed::Triangulation<dim> &triangulation);
 

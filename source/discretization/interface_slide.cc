@@ -21,14 +21,23 @@ namespace Viscoplastic
               if (rows.count(dof / dim) == 0)
                 uncovered += area;
             }
-        for (const auto &node : space.boundary_nodes())
-          if (rows.count(node.first_dof / dim) == 1)
-            nodes.push_back(
-              {space.relevant.index_within_set(node.first_dof),
-               space.normal_at(node.first_dof, condition),
-               std::pow(weights(node.first_dof) /
-                          extent(space.scene.plane_model(), node.position),
-                        1. / (dim - 1))});
+        std::map<types::global_dof_index, double> widths;
+        for (const auto &cell : space.dof_handler.active_cell_iterators())
+          if (!cell->is_artificial())
+            for (const unsigned int f : cell->face_indices())
+              if (const auto face = cell->face(f);
+                  face->at_boundary() && face->boundary_id() == id)
+                for (const unsigned int v : face->vertex_indices())
+                  {
+                    double &width = widths[face->vertex_dof_index(v, 0)];
+                    width         = std::max(width,
+                                     std::pow(face->measure(), 1. / (dim - 1)));
+                  }
+        for (const auto &[dof, width] : widths)
+          if (rows.count(dof / dim) == 1)
+            nodes.push_back({space.relevant.index_within_set(dof),
+                             space.normal_at(dof, condition),
+                             width});
         shares[id] = Utilities::MPI::sum(uncovered, space.communicator) /
                      Utilities::MPI::sum(whole, space.communicator);
       }

@@ -265,8 +265,11 @@ def of_other_units(run, other, dimension, units, entries):
     """other is the same scene, but in these units of length, stress, time."""
     if is_unstressed(run, entries):
         return ""
-    # Iterations stop at the same only where no digit changes.
+    # Iterations stop at the same only where no digit changes; where the times of
+    # steps do, energies may by 1.1e-6 of 1e-3 of the error bar.
     bound = rest_of_iterations(entries) if units.names else 1e-6
+    if chooses_steps(entries):
+        bound = max(bound, 1e-5)
     if len(run["t"]) != len(other["t"]):
         return f"units: {len(run['t'])} steps, but {len(other['t'])} in other units"
     # Where a foundation is touched without pressure, rounding decides who does.

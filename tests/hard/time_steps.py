@@ -127,7 +127,7 @@ def tiny_steps(size, report):
 @case(GROUP, "long and short steps in turn, with ratios up to 10^6: the error of the "
              "long ones")
 def step_ratios(size, report):
-    n = size(26, 104)
+    n = size(52, 104)  # a step ends at the kink of the load
     k = 5.2 / n
 
     def in_turn(ratio):

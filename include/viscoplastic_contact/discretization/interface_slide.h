@@ -17,8 +17,8 @@ namespace Viscoplastic
     /// The argument stays in use. Collective.
     explicit InterfaceSlide(const AdmissibleSpace<dim> &space);
 
-    /// The largest slide of a node over the width of its faces, the root of the
-    /// area that it stands for (in the plane its length). Collective.
+    /// The largest slide of a node over the width of its largest face, the root
+    /// of the area (in the plane the length). Collective.
     double
     largest(const DistributedVector &ghosted_u) const;
 

@@ -143,7 +143,8 @@ namespace Viscoplastic
     if (discretization.scene().quantity->is_force())
       {
         products *= linearization.share;
-        sides *= linearization.share;
+        if (sides.size() > 0)
+          sides *= linearization.share;
       }
     return products;
   }

@@ -399,7 +399,9 @@ class Kept(TestCase):
             one = run("slab", of(column, 0.005, **scene))
             for ranks in 2, 3:
                 several = run("slab", of(column, 0.005, **scene), ranks=ranks)
-                self.assertEqual(list(several["cells"]), list(one["cells"]))
+                # Cells are chosen by dual solutions to 1e-6, and a few are as good as
+                # others: 950 or 953, by ranks and processors.
+                self.assertClose(several["cells"], one["cells"], 1e-2)
                 # Steps are chosen by the dual problem, which is solved to 1e-6,
                 # and each begins where the one before has ended.
                 self.assertClose(several["t"], one["t"], 5e-3)

@@ -693,7 +693,8 @@ class Slip(TestCase):
         far = {"Boundary 23/Displacement": "0.4*max(t - 1, 0); -0.01*min(t, 1)"}
         self.assertRegex(
             self.slide(**far).stdout,
-            r"Note: at t = 2 two bodies have slid along each other by 3\.\d times the",
+            # by nearly 0.4, beside faces of 0.2
+            r"Note: at t = 2 two bodies have slid along each other by 1\.9 times the",
         )
 
     def test_fields_on_the_other_side(self):

@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """An independent solver for contact that opens and closes.
 
-A box of uniform Q1 cells, fully integrated, elastic or Maxwell with one history
-value a cell, meets a rigid foundation at y = 0 (z = 0 in space): u_n <= g at
+A box of uniform Q1 cells, or the ring that it is a section of, fully integrated,
+elastic or Maxwell with one history value a cell or at each Gauss point, meets a
+rigid foundation at y = 0 (z = 0 in space): u_n <= g at
 every node of that face, or p = int c phi (u_n - g)_+^m, with no friction, Tresca friction or Coulomb friction
 whose pressure is that of the step before or that of the step itself.  The
 discretization is the program's, so equal scenes give equal numbers.
@@ -18,8 +19,10 @@ components are separated by `;'.  Faces are numbered as in the program: 0, 1 for
 x, then 2, 3 for y and 4, 5 for z.  Its entries:
 
 size, cells     lengths of the box and numbers of cells
+inner           inner radius of a body of revolution; with 0 u_r = 0 on the axis
 E, nu           isotropic material; 1 and 0.3 unless given
 viscosity       eta of `maxwell'; elastic without it
+history         `quadrature points' or `cell means', the latter unless given
 top             displacement of the face opposite to the foundation, `free'
                 where a component is not prescribed
 tractions       {face: traction}; the other faces are free
@@ -38,11 +41,13 @@ from types import SimpleNamespace
 
 import numpy as np
 from scipy.linalg import block_diag
-from scipy.sparse import coo_matrix
+from scipy.sparse import coo_matrix, diags
 from scipy.sparse.linalg import splu
 
 PLATE = {"size": (2, 1), "cells": (16, 8)}
 SOFT = {**PLATE, "viscosity": 0.5}
+PILLAR = {"size": (1, 1), "cells": (8, 8), "inner": 0, "history": "quadrature points"}
+TUBE = {**PILLAR, "inner": 0.5, "viscosity": 0.5}
 PAD = {"size": (1, 1, 0.5), "cells": (4, 4, 3)}
 TURN = "0.02*(1 - cos(pi*t)); 0.02*sin(pi*t); "
 PRESSED = {"top": "0.03*sin(pi*t); -0.02*min(2*t, 1)", "gap": "0.001*x"}
@@ -83,6 +88,30 @@ SCENES = {
     "soft rough": {
         **PLATE, **ROUGH, "law": "coupled", "mu": "0.3 + 0.2*x", "phases": "1.8: 9",
         "top": "0.01*sin(pi*t); -0.006*min(t, 2 - t)", "compliance": ("300", 2),
+    },
+    # bodies of revolution, on the axis and beside it
+    "pillar": {
+        **PILLAR, "gap": "0.004 + 0.02*x", "law": "none", "phases": "1.5: 6",
+        "top": "free; 0.01*(1 - 3*x)*sin(2*pi*t) - 0.02*sin(pi*t)",
+        "tractions": {1: "0.01*t; 0"},
+    },
+    "tube": {
+        **TUBE, **ROUGH, "law": "tresca", "bound": "0.002*(1 + x)",
+        "top": "0.01*sin(pi*t); -0.006*min(t, 2 - t)",
+        "tractions": {0: "0.03*sin(2*pi*t); 0"}, "phases": "1: 5, 1.8: 4",
+    },
+    "tube of means": {
+        **TUBE, **PRESSED, "history": "cell means", "law": "lagged", "mu": "0.3",
+        "phases": "1: 4, 2: 4",
+    },
+    "pillar that creeps": {
+        **PILLAR, "viscosity": 0.5, "gap": "0.02*x^2", "law": "coupled",
+        "mu": "0.1 + 0.2*x", "phases": "1: 4, 2: 4",
+        "top": "0.03*x*sin(pi*t); -0.02*min(2*t, 1)",
+    },
+    "soft tube": {
+        **TUBE, **PRESSED, "law": "coupled", "mu": "0.3", "phases": "1: 4, 2: 4",
+        "compliance": ("2 + x", 1.5),
     },
     # in space the friction turns with the motion
     "turning tresca": {
@@ -132,8 +161,11 @@ def times(scene):
 def parameters(scene):
     """The scene as entries of a parameter file, without gap and friction."""
     dim = len(scene["cells"])
-    numbers = [", ".join(map(str, n)) for n in
-               (scene["cells"], (0,) * dim, scene["size"])]
+    begin = np.zeros(dim)
+    begin[0] = scene.get("inner", 0)
+    end = begin + scene["size"]
+    numbers = [", ".join(map(str, n)) for n in (scene["cells"], begin, end)]
+    ends = [begin, np.append(end[:-1], 0)]
     entries = {
         "Dimension": dim,
         "Geometry/Generator": "subdivided_hyper_rectangle",
@@ -142,19 +174,25 @@ def parameters(scene):
         "Material/Poisson's ratio": scene.get("nu", 0.3),
         "Material/Volumetric integration": "full",
         "Time/Phases": scene["phases"],
+        # the first and the last node on the foundation
+        "Output/Points": "; ".join(", ".join(map(str, point)) for point in ends),
         f"Boundary {2 * dim - 2}/Role": "contact",
         f"Boundary {2 * dim - 1}/Role": "displacement",
         f"Boundary {2 * dim - 1}/Displacement": scene["top"],
     }
     if "viscosity" in scene:
         entries["Material/Law"] = "maxwell"
-        entries["Material/Stress history"] = "cell means"
+        entries["Material/Stress history"] = scene.get("history", "cell means")
         entries["Material/maxwell/Viscosity"] = scene["viscosity"]
     for face in range(2 * dim - 2):
         entries[f"Boundary {face}/Role"] = "free"
     for face, traction in scene.get("tractions", {}).items():
         entries[f"Boundary {face}/Role"] = "traction"
         entries[f"Boundary {face}/Traction"] = traction
+    if "inner" in scene:
+        entries["Geometry/Plane model"] = "axisymmetric"
+    if scene.get("inner") == 0:
+        entries["Boundary 0/Role"] = "symmetry"
     return entries
 
 
@@ -174,7 +212,7 @@ class Body:
     def __init__(self, scene):
         self.cells, self.size = np.array(scene["cells"]), np.array(scene["size"])
         self.dim = dim = len(self.cells)
-        self.h, self.volume = self.size / self.cells, np.prod(self.size / self.cells)
+        self.h, self.inner = self.size / self.cells, scene.get("inner")
         E, nu = scene.get("E", 1), scene.get("nu", 0.3)
         self.mu = E / (2 * (1 + nu))
         self.viscosity = scene.get("viscosity", np.inf)
@@ -182,8 +220,10 @@ class Body:
 
         self.grid = np.indices(self.cells[::-1] + 1)[::-1].reshape(dim, -1).T
         self.nodes = self.grid * self.h
+        self.nodes[:, 0] += self.inner or 0
         self.stride = np.cumprod([1, *(self.cells[:-1] + 1)])
         first = np.flatnonzero((self.grid < self.cells).all(axis=1))
+        self.begin = self.nodes[first]
         cell_nodes = first[:, None] + corners(dim) @ self.stride
         dofs = cell_nodes[:, :, None] * dim + np.arange(dim)
         self.cell_dofs = dofs.reshape(len(first), -1)
@@ -192,28 +232,52 @@ class Body:
         # the plane; shear strains are doubled.
         self.D = self.mu * np.diag([2.0, 2, 2, 1, 1, 1])
         self.D[:3, :3] += 2 * self.mu * nu / (1 - 2 * nu)
-        strains = [self.strain(q) for q in itertools.product(GAUSS, repeat=dim)]
-        K = sum(B.T @ self.D @ B for B in strains) * self.volume / len(strains)
-        self.mean = sum(strains) / len(strains)
-        rows = np.repeat(self.cell_dofs, len(K), axis=1).ravel()
-        columns = np.tile(self.cell_dofs, (1, len(K))).ravel()
-        values = np.tile(K.ravel(), len(first))
-        self.A = coo_matrix((values, (rows, columns))).tocsr()
+        # strain: (cell, Gauss point, strain, dof), volume: (cell, Gauss point)
+        gauss = [np.array(q) for q in itertools.product(GAUSS, repeat=dim)]
+        strain = np.stack([self.strains(q) for q in gauss], axis=1)
+        volume = np.stack([self.extent(self.begin + q * self.h) for q in gauss], 1)
+        volume *= self.h.prod() / len(gauss)
+        K = np.einsum("cq,cqsi,st,cqtj->cij", volume, strain, self.D, strain)
+        rows = np.repeat(self.cell_dofs, K.shape[1], axis=1).ravel()
+        columns = np.tile(self.cell_dofs, (1, K.shape[1])).ravel()
+        self.A = coo_matrix((K.ravel(), (rows, columns))).tocsr()
+        # The same of the samples of the history.
+        if scene.get("history", "cell means") == "cell means":
+            whole = volume.sum(axis=1, keepdims=True)
+            strain = np.einsum("cq,cqsi->csi", volume / whole, strain)[:, None]
+            volume = whole
+        self.sampled, self.volume = strain, volume
+        # What does not move has a row of its own.
+        self.moves = np.ones(self.nodes.shape)
+        if self.inner == 0:
+            self.moves[self.on(0), 0] = 0
+        self.moves = self.moves.ravel()
+        moving = diags(self.moves)
+        self.A = (moving @ self.A @ moving + diags(1 - self.moves)).tocsr()
 
-    def strain(self, point):
-        """The matrix from nodal displacements of a cell to its strain."""
-        B = np.zeros((6, 2**self.dim, self.dim))
+    def extent(self, points):
+        """What a section counts for at each point."""
+        return np.ones(len(points)) if self.inner is None else 2 * np.pi * points[:, 0]
+
+    def strains(self, point):
+        """The matrices (cell, strain, dof) from nodal displacements of each cell to
+        its strain at a point of the unit cell."""
+        B = np.zeros((len(self.begin), 6, 2**self.dim, self.dim))
         for i, j in itertools.product(range(self.dim), repeat=2):
             slope = np.delete(factors(point), i, axis=1).prod(axis=1) / self.h[i]
             slope *= 2 * corners(self.dim)[:, i] - 1
-            B[i if i == j else SHEAR[frozenset((i, j))], :, j] = slope
-        return B.reshape(6, -1)
+            B[:, i if i == j else SHEAR[frozenset((i, j))], :, j] = slope
+        if self.inner is not None:
+            radius = self.begin[:, :1] + point[0] * self.h[0]
+            B[:, 2, :, 0] = factors(point).prod(axis=1) / radius
+        return B.reshape(*B.shape[:2], -1)
 
     def rate(self, u, z):
-        """G at the mean stress of each cell: plane strain keeps the stress out of
-        the plane."""
-        stress = u.ravel()[self.cell_dofs] @ (self.D @ self.mean).T + z
-        stress[:, :3] -= stress[:, :3].mean(axis=1, keepdims=True)
+        """G at the stress of each sample: plane strain keeps the stress out of the
+        plane."""
+        strain = np.einsum("cqsi,ci->cqs", self.sampled, u.ravel()[self.cell_dofs])
+        stress = strain @ self.D + z
+        stress[..., :3] -= stress[..., :3].mean(axis=-1, keepdims=True)
         return -self.mu / self.viscosity * stress
 
     def on(self, face):
@@ -233,6 +297,7 @@ class Body:
             points.append(self.nodes[first] + shift)
             columns.append(np.zeros((len(self.nodes), len(first))))
             weights = factors(q).prod(axis=1) * self.h[axes].prod() / 2 ** len(axes)
+            weights = np.outer(weights, self.extent(points[-1]))
             for step, weight in zip(corners(len(axes)) @ self.stride[axes], weights):
                 columns[-1][first + step, np.arange(len(first))] = weight
         return np.concatenate(points), np.concatenate(columns, axis=1)
@@ -245,8 +310,9 @@ class Body:
             values = [evaluate(c, points, t) for c in traction.split(";")]
             force += integral @ np.stack(values, axis=1)
         force = force.ravel()
-        np.subtract.at(force, self.cell_dofs, self.volume * z @ self.mean)
-        return force
+        stress = np.einsum("cq,cqsi,cqs->ci", self.volume, self.sampled, z)
+        np.subtract.at(force, self.cell_dofs, stress)
+        return self.moves * force
 
 
 def interior_point(S, f, gap, before, rho):
@@ -438,7 +504,7 @@ def solve(scene):
     if compliance:
         compliance = integral @ evaluate(compliance[0], points, 0), compliance[1]
 
-    u, z, p = np.zeros_like(nodes), np.zeros((len(body.cell_dofs), 6)), np.zeros(n)
+    u, z, p = np.zeros_like(nodes), np.zeros((*body.volume.shape, 6)), np.zeros(n)
     steps, start = [], 0.0
     for t in times(scene):
         z = z + (t - start) * body.rate(u, z)

@@ -55,6 +55,7 @@ class Reference(TestCase):
         normal = "xyz"[dim - 1]
         size = max(step.normal_force for step in steps)
         energy = max(step.energy for step in steps)
+        length = max(abs(step.u).max() for step in steps)
         tolerance = 1e-8 if ranks == 1 else 1e-6
         for i, step in enumerate(steps, start=1):
             with self.subTest(t=step.t):
@@ -78,6 +79,15 @@ class Reference(TestCase):
                     abs(result["max_pressure"][i] - pressure.max()),
                     10 * tolerance * size / step.area.min(),
                 )
+                for point, node in ("point0", 0), ("point1", len(step.p) - 1):
+                    for d in range(dim):
+                        u = result[f"{point}_{'xyz'[d]}"][i]
+                        self.assertClose(
+                            u,
+                            step.u[node, d],
+                            absolute=tolerance * length,
+                            what=point,
+                        )
                 opening = step.gap - step.u[: len(step.p), -1] * -1
                 gap = max(opening.max(), 0)
                 self.assertLess(abs(result["max_gap"][i] - gap), 1e-8)
@@ -132,6 +142,14 @@ class Reference(TestCase):
     def test_compliance_in_space(self):
         self.check("soft turning")
         self.check("soft turning", ranks=3)
+
+    def test_bodies_of_revolution(self):
+        for name, ranks in (
+            *(("pillar", 1), ("tube", 1), ("tube", 2), ("tube of means", 1)),
+            *(("pillar that creeps", 1), ("soft tube", 1)),
+        ):
+            with self.subTest(name, ranks=ranks):
+                self.check(name, ranks, **{"Solver/Contact tolerance": 1e-12})
 
     def test_fixed_point_in_space(self):
         self.check("turning coulomb")

@@ -22,8 +22,8 @@ namespace Viscoplastic
     /// cell, with the dual solution w: over the volume between the sides and
     /// the manifold, and with the loads f where they belong, the equations miss
     ///
-    ///     int b . w - sigma : eps(w)  +  int_curved f . w - int_straight f .
-    ///     w.
+    ///     int b . w - sigma : eps(w)
+    ///         + int_curved f . w - int_straight f . w.
     ///
     /// Their sum is the error to leading order. Of meshes from files it is
     /// zero: they are the geometry. Empty where no side is curved.

@@ -48,17 +48,16 @@ namespace Viscoplastic
   ///
   /// - of the displacement of a point, l is its component: sign = 1;
   /// - of a reaction, l = 0, and w is the unit direction on the boundary
-  /// instead
-  ///   of zero: sign = -1;
+  ///   instead of zero: sign = -1;
   /// - of the friction force, l = 0, w is the unit direction at points that
   ///   stick, and w_c less this direction takes the place of w_c at those that
   ///   slip: sign = 1;
   /// - of the contact force likewise, along the normals where contact is
-  /// closed,
-  ///   with K the slope of the pressure where a foundation gives way: sign = 1;
-  ///   of both on one boundary, times the part of a point's area that is there;
+  ///   closed, with K the slope of the pressure where a foundation gives way:
+  ///   sign = 1; of both on one boundary, times the part of a point's area that
+  ///   is there;
   /// - of the work of friction in all steps, as long as what slips goes on in
-  /// the same direction, l(v) = sum_slipping lambda_c . v_c: sign = 1.
+  ///   the same direction, l(v) = sum_slipping lambda_c . v_c: sign = 1.
   ///
   /// With Coulomb's law of the step's own pressure, lambda_c of a slipping
   /// point changes with its pressure, too, and the equations of such a point

@@ -14,11 +14,12 @@ namespace Viscoplastic
 {
   /// The residual estimator for the inequality of one step,
   ///
-  ///     eta_K^2 = sum_e 1/24 h (r, M^-1 r)_e   interior faces, r = [sigma_h
-  ///     nu]
-  ///               + 1/6 h (r, M^-1 r)_e        boundary,
-  ///               r = F - sigma_h nu on Gamma_2,
-  ///               r = lambda_h + (sigma_h nu)_tau, S - sigma_nu on Gamma_3,
+  ///     eta_K^2 = sum_e 1/24 h (r, M^-1 r)_e  interior faces,
+  ///                     r = [sigma_h nu],
+  ///             + sum_e 1/6 h (r, M^-1 r)_e   boundary,
+  ///                     r = F - sigma_h nu on Gamma_2,
+  ///                     r = lambda_h + (sigma_h nu)_tau, S - sigma_nu on
+  ///                         Gamma_3,
   ///
   /// with the width h of the cell across the face, the acoustic tensor
   /// M = nu . E . nu, sigma_h = E eps(u_h) + z_h and z_h the cell means of z.
@@ -121,8 +122,8 @@ namespace Viscoplastic
 
     /// The products of the errors of two solutions, with their signs,
     ///
-    ///     a(e_u, e_w)_K = sum_e 1/24 h (r_u, M^-1 r_w)_e + 1/6 h (r_u, M^-1
-    /// r_w)_e,
+    ///     a(e_u, e_w)_K = sum_e 1/24 h (r_u, M^-1 r_w)_e
+    ///                     + sum_e 1/6 h (r_u, M^-1 r_w)_e,
     ///
     /// from the residuals r of both as above. No bound: for products of
     /// errors, which have signs. Collective.

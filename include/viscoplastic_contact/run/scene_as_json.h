@@ -19,8 +19,7 @@ namespace Viscoplastic
   ///                                that is replaced when parameters are read
   ///   files                        a checksum of all files that belong to it
   ///   cells, h                     of its first mesh; h is the largest
-  ///   diameter
-  ///                                of a cell over sqrt(dim)
+  ///                                diameter of a cell over sqrt(dim)
   ///   volumetric_integration       what `automatic' stands for
   ///
   /// and @p with_means, see SceneData:

@@ -78,6 +78,7 @@ namespace Viscoplastic
                   const Forces<dim>          &forces)
   {
     const auto          square = [](const double x) { return x * x; };
+    const bool          has_z  = forces.internal.size() > 0; // no dual solution
     std::vector<double> sums(2, 0.);
     for (std::size_t i = 0; i < space.owned.n_elements(); ++i)
       {
@@ -87,7 +88,13 @@ namespace Viscoplastic
           continue;
         sums[0] += stiffness * square(forces.u.begin()[i]);
         if (!space.excluded()[i])
-          sums[0] += square(forces.load.values.begin()[i]) / stiffness;
+          {
+            sums[0] += square(forces.load.values.begin()[i]) / stiffness;
+            if (has_z)
+              sums[0] +=
+                square(forces.internal.begin()[i] - forces.elastic.begin()[i]) /
+                stiffness;
+          }
         sums[1] += square(forces.elastic.begin()[i]) / stiffness;
       }
     Utilities::MPI::sum(sums, space.communicator, sums);

@@ -33,7 +33,8 @@ namespace Viscoplastic
                   const State<dim>        &state);
 
   /// What rounding leaves of a state in the energy norm: of displacements of
-  /// the whole body, as it is carried along, and of loads that cancel.
+  /// the whole body, as it is carried along, and of loads and forces of z that
+  /// cancel. Without `internal' those of z do not count.
   struct EnergyRounding
   {
     double size;

@@ -135,7 +135,8 @@ namespace
   void
   complain(const std::string &sentence)
   {
-    std::cerr << "viscoplastic_contact: " << sentence << std::endl;
+    // One write: ranks that fail apart may do so at the same time.
+    std::cerr << "viscoplastic_contact: " + sentence + "\n";
   }
 
   /// Whether all ranks come here within some seconds: then they have failed

@@ -18,8 +18,9 @@ namespace Viscoplastic
     void
     end(const std::string &event)
     {
-      std::cerr << "viscoplastic_contact: " << event << " while " << *current
-                << "; a law of a shared library may do so." << std::endl;
+      // One write: several ranks may end at the same time.
+      std::cerr << "viscoplastic_contact: " + event + " while " + *current +
+                     "; a law of a shared library may do so.\n";
       std::_Exit(1);
     }
 

@@ -116,7 +116,8 @@ class Fields:
     """One output time of a VTU series, all pieces joined."""
 
     def __init__(self, pieces):
-        offset, points, cells = 0, [], []
+        # a file of a face may have no points at all: empty arrays to join
+        offset, points, cells = 0, [np.zeros((0, 3))], []
         for piece in pieces:
             points.append(piece.points)
             if len({block.type for block in piece.cells}) != 1:
@@ -124,9 +125,9 @@ class Fields:
             cells += [block.data + offset for block in piece.cells]
             offset += len(piece.points)
         self.points = np.concatenate(points).astype(float)
-        self.cells = np.concatenate(cells)
+        self.cells = np.concatenate(cells) if cells else np.zeros((0, 2), int)
         self.point_data, self.cell_data = {}, {}
-        for label in pieces[0].point_data:
+        for label in pieces[0].point_data if pieces else []:
             values = np.concatenate([p.point_data[label] for p in pieces])
             values = values.astype(float)
             name = without_unit(label)

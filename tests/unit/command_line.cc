@@ -104,8 +104,28 @@ namespace
     // Slow steps are forgotten.
     for (unsigned int i = 0; i < 60; ++i)
       remaining.add_step(0.5, 100.);
-    EXPECT_NEAR(remaining.seconds(10, 100.), 5., 0.1);
+    EXPECT_NEAR(remaining.seconds(10, 100.), 5., 0.2);
     EXPECT_EQ(RemainingTime().seconds(10, 100.), 0.);
+  }
+
+
+
+  TEST(Progress, TimeLeftIsTrueFromTheTenthStepOn)
+  {
+    // The first step sets up, each hundredth one writes fields.
+    const auto seconds = [](const unsigned int n) {
+      return n == 1 ? 20. : n % 100 == 0 ? 51. : 1.;
+    };
+    RemainingTime remaining;
+    for (unsigned int n = 1; n <= 5000; ++n)
+      {
+        remaining.add_step(seconds(n), 64.);
+        const double truth = n < 100 ? 1. : 1.5;
+        if (n == 10 || n > 1000)
+          {
+            EXPECT_NEAR(remaining.seconds(1., 64.), truth, 0.2 * truth) << n;
+          }
+      }
   }
 
 

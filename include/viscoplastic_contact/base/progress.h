@@ -10,8 +10,9 @@
 namespace Viscoplastic
 {
   /// How long the rest of a run takes, from what steps have taken: in
-  /// proportion to the number of cells, and with weights that halve in about
-  /// seven steps.
+  /// proportion to the number of cells. Those of the last third of the run so
+  /// far count, or some ten: of a long run enough to have its share of steps
+  /// that write fields. The first step sets up what others use.
   class RemainingTime
   {
   public:
@@ -19,8 +20,11 @@ namespace Viscoplastic
     void
     add_step(const double seconds, const double n_cells)
     {
-      weighted_seconds = 0.9 * weighted_seconds + seconds;
-      weighted_cells   = 0.9 * weighted_cells + n_cells;
+      ++n;
+      const double kept =
+        n == 2 ? 0. : 1. - 1. / std::max(10., static_cast<double>(n) / 3.);
+      weighted_seconds = kept * weighted_seconds + seconds;
+      weighted_cells   = kept * weighted_cells + n_cells;
     }
 
     /// What @p n_steps further ones will take on a mesh of @p n_cells.
@@ -33,7 +37,8 @@ namespace Viscoplastic
     }
 
   private:
-    double weighted_seconds = 0., weighted_cells = 0.;
+    unsigned int n                = 0;
+    double       weighted_seconds = 0., weighted_cells = 0.;
   };
 
 

@@ -55,6 +55,12 @@ SLAB = {
     "Time__Phases": "1: 8, 2: 8",
     "Study__Budget": 1e5,
 }
+# Enough for verdicts that are far from their limits.
+FEW_CELLS = {
+    **SLAB,
+    "Geometry__Arguments": "8, 4 : 0, 0 : 2, 1 : true",
+    "Time__Phases": "1: 4, 2: 4",
+}
 
 
 class Case(Folder):
@@ -483,7 +489,7 @@ class Effects(TestCase):
     def test_of_what_never_acts(self):
         with Case(
             VERIFICATION / "slab.prm",
-            **SLAB,
+            **FEW_CELLS,
             Boundary_2__Friction_bound="10",
             Material__Law="perzyna",
             Material__perzyna__Yield_radius="100",
@@ -528,7 +534,7 @@ class Effects(TestCase):
         """Steps that only backward Euler can take."""
         with Case(
             VERIFICATION / "slab.prm",
-            **SLAB,
+            **FEW_CELLS,
             Material__maxwell__Viscosity=0.01,
             Time__Scheme="backward Euler",
         ) as scene:
@@ -578,7 +584,7 @@ class Effects(TestCase):
         with Case(
             VERIFICATION / "slab.prm",
             Geometry__Arguments="8, 4 : 0, 0 : 2, 1 : true",
-            Error_control__Tolerance=0.15,
+            Error_control__Tolerance=0.3,
             Study__Budget=1e5,
         ) as scene:
             process = scene.run("effects")
@@ -623,7 +629,7 @@ class Effects(TestCase):
     def test_steps_by_their_error(self):
         """Step control: coarser levels have larger tolerances; two ranks."""
         with Case(
-            VERIFICATION / "slab.prm", **SLAB, Step_control__Tolerance=0.05
+            VERIFICATION / "slab.prm", **FEW_CELLS, Step_control__Tolerance=0.05
         ) as scene:
             process = scene.run("effects", ranks=2)
             self.assertEqual(process.returncode, 0, process.stderr)

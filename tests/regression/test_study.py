@@ -403,7 +403,7 @@ class Ladders(TestCase):
             Study__Levels=8,
             Study__Ladders="both",
             **NOTHING_TIMED,
-            Study__Budget=8,
+            Study__Budget=12,
         ) as folder:
             process = folder.run("study")
             self.assertEqual(process.returncode, 0, process.stderr)

@@ -348,9 +348,10 @@ class Missed(TestCase):
     def test_for_steps(self):
         self.check(
             "'Step control/Smallest step'",
-            0.04,
+            0.05,
             **{
                 "Step control/Smallest step": 0.25,
+                "Material/maxwell/Viscosity": 0.2,
                 "Time/Scheme": "forward Euler",
                 "Time/Stiffness policy": "backward Euler",
             },

@@ -549,7 +549,7 @@ class Refused(TestCase):
             Geometry__Global_refinements=0,
             Study__Levels=9,
             Study__Ladders="both",
-            Study__Budget=3,
+            Study__Budget=5,
         ) as folder:
             process = folder.run("study")
             self.assertEqual(process.returncode, 0, process.stderr)

@@ -36,7 +36,7 @@ class Kept(TestCase):
         return result
 
     def test_plane(self):
-        for tolerance in 0.2, 0.05:
+        for tolerance in 0.2, 0.08:
             self.check("coulomb_2d", tolerance)
             self.check("tresca_2d", tolerance)
 

@@ -299,27 +299,27 @@ class Ladders(TestCase):
             VERIFICATION / "slab.prm",
             Geometry__Arguments="8, 4 : 0, 0 : 2, 1 : true",
             Time__Phases="1: 4, 2: 4",
-            Error_control__Tolerance=0.05,
+            Error_control__Tolerance=0.1,
             Study__Levels=3,
             Study__Ladders="both",
             Study__Strategies="tolerance, uniform",
-            Study__Target_errors="0.1, 0.05, 1e-5",
+            Study__Target_errors="0.2, 0.1, 1e-5",
             Study__Budget=60,
         ) as folder:
             process = folder.run("study")
             self.assertEqual(process.returncode, 0, process.stderr)
             rows = folder.ladder("both", strategy="tolerance")
             self.assertEqual(
-                [row["tolerance"] for row in rows], [0.2, 0.1, 0.05, 0.025]
+                [row["tolerance"] for row in rows], [0.4, 0.2, 0.1, 0.05]
             )
-            self.assertEqual(rows[-1]["run"], "tolerance_0.025")
+            self.assertEqual(rows[-1]["run"], "tolerance_0.05")
             self.assertTrue(np.isnan(rows[-1]["error_energy"]))
             for row in rows[:-1]:
                 self.assertLess(row["error_energy"], row["tolerance"])
                 self.assertLess(row["estimate_total"], row["tolerance"])
             self.assertLess(rows[2]["error_energy"], 0.6 * rows[1]["error_energy"])
             about = json.loads((folder.study / "study.json").read_text())
-            self.assertEqual(about["reference_run"], "tolerance_0.025")
+            self.assertEqual(about["reference_run"], "tolerance_0.05")
             (fit,) = about["tolerance_fits"]
             self.assertGreater(fit["cells"]["exponent_against_error"], 1.0)
             prices = [p for p in about["prices"] if p["strategy"] == "tolerance"]
@@ -333,7 +333,7 @@ class Ladders(TestCase):
             process = folder.run("study")
             self.assertEqual(process.returncode, 0, process.stderr)
             about = json.loads((folder.study / "study.json").read_text())
-            self.assertEqual(about["reference_run"], "tolerance_0.025")
+            self.assertEqual(about["reference_run"], "tolerance_0.05")
             errors = [
                 row["error_energy"]
                 for strategy in ("uniform", "adaptive")
@@ -344,7 +344,7 @@ class Ladders(TestCase):
             # With a smaller tolerance those of before are there already.
             before = folder.finished()
             folder.set(
-                Error_control__Tolerance=0.025,
+                Error_control__Tolerance=0.05,
                 Study__Strategies="tolerance",
                 Study__Budget=600,
             )
@@ -352,9 +352,9 @@ class Ladders(TestCase):
             self.assertEqual(process.returncode, 0, process.stderr)
             after = folder.finished()
             # (Errors of the others are differences to another run now.)
-            self.assertIn("tolerance_0.0125", after)
+            self.assertIn("tolerance_0.025", after)
             self.assertEqual(
-                folder.ladder("both")[-1]["run"], "tolerance_0.0125", list(after)
+                folder.ladder("both")[-1]["run"], "tolerance_0.025", list(after)
             )
             self.assertTrue(set(before) <= set(after))
 

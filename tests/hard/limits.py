@@ -74,10 +74,10 @@ def one_step(report, dim, n, solver, most=None):
     "largest meshes that fit 16 GiB",
 )
 def memory(size, report):
-    one_step(report, 2, size(256, 512), "direct")
-    one_step(report, 2, size(256, 512), "multigrid")
-    one_step(report, 3, size(20, 32), "direct")
-    one_step(report, 3, size(20, 32), "multigrid")
+    one_step(report, 2, size(180, 512), "direct")
+    one_step(report, 2, size(180, 512), "multigrid")
+    one_step(report, 3, size(16, 32), "direct")
+    one_step(report, 3, size(16, 32), "multigrid")
     if size.full:
         one_step(report, 2, LARGEST[2], "multigrid", 16)
         one_step(report, 3, LARGEST[3], "multigrid", 16)

@@ -137,7 +137,7 @@ class Relativity(TestCase):
         )
 
     def test_plate_under_hanging_nodes(self):
-        """Cells refined at the face: it has hanging nodes, on 1, 2, 3 ranks."""
+        """Cells refined at the face: it has hanging nodes, on 1 and 3 ranks."""
         mesh = {
             "Geometry/Arguments": "4, 4, 2 : 0, 0, 0 : 1, 1, 0.5 : true",
             "Geometry/Boundary ids": "if(z < 1e-6 && x < 0.5, 7, id)",
@@ -162,7 +162,7 @@ class Relativity(TestCase):
                     "-0.2*(1 - cos(pi*t)); -0.2*sin(pi*t); 0",
             },
         )
-        others = [resting] + [run("conveyor_3d", mesh, ranks=n) for n in (2, 3)]
+        others = resting, run("conveyor_3d", mesh, ranks=3)
         for other in others:
             for name in ("stored_energy", "slip_area", "friction_dissipation",
                          "friction_force_x", "friction_force_y"):

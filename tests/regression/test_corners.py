@@ -251,7 +251,7 @@ class Corners(TestCase):
         scene["Boundary 5/Traction"] = "0.3/13*t; 0.4/13*t; -1.4/13*t"
         gradient = np.zeros((3, 3))
         gradient[2] = 0.06, 0.08, -0.08
-        for ranks in 1, 2, 3:
+        for ranks in 1, 3:
             with self.subTest(ranks=ranks):
                 result = run("corner_tresca_90_3d", scene, ranks)
                 self.check_displacement(result, (0, 0, 0.1), gradient)
@@ -270,7 +270,7 @@ class Corners(TestCase):
                     sum(parts), result.vector("friction_force"), absolute=1e-12
                 )
                 self.check_identities(result)
-                # 7 on one rank, 8 on two: linear solves are loose in the meantime
+                # 7 on one rank, 8 on several: linear solves are loose in the meantime
                 self.assertLessEqual(result["contact_iterations"].max(), 8)
                 self.assertEqual(result["bound_iterations"].max(), 0)
 
@@ -299,7 +299,7 @@ class Corners(TestCase):
                     {
                         "Dimension": 3,
                         "Geometry/Generator": "subdivided_hyper_rectangle",
-                        "Geometry/Arguments": "6, 6, 6 : 0, 0, 0 : 1, 1, 1 : true",
+                        "Geometry/Arguments": "4, 4, 4 : 0, 0, 0 : 1, 1, 1 : true",
                         "Solver/Contact tolerance": 1e-10,
                         "Time/Phases": "1: 2, 2: 4",
                         **{
@@ -354,7 +354,7 @@ class Corners(TestCase):
         for side in 0, 2:
             scene[f"Boundary {side}/Role"] = "contact"
             scene[f"Boundary {side}/Friction law"] = "coulomb"
-        alone, *others = [run("edge", scene, ranks, text="") for ranks in (1, 2, 3)]
+        alone, *others = [run("edge", scene, ranks, text="") for ranks in (1, 3)]
         self.assertGreater(alone["cells"][-1], 8 * alone["cells"][0])
         for result in alone, *others:
             self.check_identities(result)

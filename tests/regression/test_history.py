@@ -364,12 +364,11 @@ class Scenes(TestCase):
             }
             done = self.restarted("pad_adaptive", more, 0.56)
             self.assertGreater(np.ptp(done["cells"]), 0)
-            for ranks in 2, 3:
-                other = run("pad_adaptive", more, ranks=ranks)
-                for column in "max_displacement", "viscous_dissipation", "cells":
-                    self.assertClose(
-                        other[column], done[column], 1e-6, 1e-12, f"{ranks}, {column}"
-                    )
+            other = run("pad_adaptive", more, ranks=3)
+            for column in "max_displacement", "viscous_dissipation", "cells":
+                self.assertClose(
+                    other[column], done[column], 1e-6, 1e-12, column
+                )
 
     def test_transfer(self):
         """On meshes that change, the history goes where z goes: creep is that of

@@ -198,7 +198,7 @@ class Example(Libraries):
     def test_is_the_formula_in_the_plane_on_adaptive_meshes_and_ranks(self):
         formula = run("slab_adaptive", PARSED)
         self.assertGreater(formula["viscous_dissipation"][-1], 1e-3)
-        for ranks in (1, 2, 3):
+        for ranks in (1, 3):
             with self.subTest(ranks=ranks):
                 law = run("slab_adaptive", self.law, ranks=ranks)
                 self.assertSameRuns(law, formula, 1e-7)

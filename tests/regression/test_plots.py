@@ -193,7 +193,8 @@ class Figures(TestCase):
         """Numbers and labels stay apart, one power of ten holds for all axes."""
         for extent in ((1, 1, 1), (0.03, 0.02, 0.008), (4, 1, 0.3), (0.1, 0.1, 1),
                        (4e-4, 1e-4, 5e-5), (2e6, 1e6, 3e5)):
-            for view in (VIEW, (50, 200), (30, 120)):
+            # the other views by bodies of unlike sides
+            for view in (VIEW, (50, 200), (30, 120))[: 3 if extent[0] == 4 else 1]:
                 figure = self.draw(block(*extent), view)
                 labels = [t for t in figure.texts if t.get_text()[0] == "$"]
                 self.assertEqual(len(labels), 3)
@@ -790,8 +791,8 @@ class Pictures(TestCase):
         self.assertGreater(ink, 0.01, path)
 
     def draw(self, result, *arguments, reason=None, plot=plot):
-        """The pictures that contrib/plot says it has drawn."""
-        process = plot(result.directory, *arguments)
+        """The pictures that contrib/plot says it has drawn, small ones."""
+        process = plot(result.directory, *arguments, "--dpi", 50)
         self.assertEqual(process.returncode, 0, process.stderr)
         self.assertNotIn("Traceback", process.stderr)
         if reason is None:
@@ -825,7 +826,7 @@ class Pictures(TestCase):
             },
         )
         reason = "^Not drawn: efficiency: there is no exact solution.*$"
-        names = self.draw(result, "--all", "--dpi", 60, reason=reason)
+        names = self.draw(result, "--all", reason=reason)
         self.assertLessEqual(
             {"overview.png", "von_mises.png", "displacement_x.png", "stress_xy.png",
              "pressure.png", "contact.png", "history.png", "hysteresis.png",
@@ -864,7 +865,7 @@ class Pictures(TestCase):
                 result = run("slab", {**SMALL_SLAB, **law, "Output/Fields every": 4})
                 asked = ["overview", "contact", "history"]
                 asked += ["stick-slip"] if friction == "coulomb" else []
-                names = self.draw(result, *asked, "--dpi", 60)
+                names = self.draw(result, *asked)
                 self.assertEqual(len(names), len(asked))
         self.draw(result, "von_mises", "--window", "0,0,1,0.5", "--label", "0.5,0.2=here")
         columns = "contact_area,max_pressure,max_gap,contact_force_x+contact_force_y"
@@ -912,7 +913,7 @@ class Pictures(TestCase):
         )
         wanted = ("displacement_z", "estimator", "subdomain", "contact", "history",
                   "hysteresis")
-        names = self.draw(result, "overview", *wanted, "--view", "30,120", "--dpi", 50)
+        names = self.draw(result, "overview", *wanted, "--view", "30,120")
         self.assertLessEqual({f"{name}.png" for name in wanted}, names)
         self.assertIn("two-dimensional scenes", self.refuse(result, "stick-slip"))
 
@@ -927,7 +928,7 @@ class Pictures(TestCase):
         from PIL import Image
 
         result = run("slab", {**SMALL_SLAB, "Output/Fields every": 8})
-        names = self.draw(result, "contact", "von_mises", "--animate", "--dpi", 50)
+        names = self.draw(result, "contact", "von_mises", "--animate")
         self.assertEqual(names, {"contact.gif", "von_mises.gif"})
         frames = []
         with Image.open(result.directory / "pictures" / "contact.gif") as image:
@@ -948,7 +949,7 @@ class Pictures(TestCase):
         result = run(
             "cantilever_creep", {"Output/Fields every": 0, "Time/Phases": "0.13: 1"}
         )
-        self.draw(result, "--all", "--dpi", 50, reason="contact: .* without contact")
+        self.draw(result, "overview", "history")
         self.assertIn("without contact", self.refuse(result, "contact"))
         self.assertIn("without contact", self.refuse(result, "stick-slip"))
         result = run("slab", {**SMALL_SLAB, "Output/Fields every": 0})

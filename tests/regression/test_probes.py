@@ -174,7 +174,7 @@ class Uniform(TestCase):
 
     def test_in_the_plane(self):
         initial = np.diag([0.03, -0.05, 0.04])
-        for ranks in 1, 2, 3:
+        for ranks in 1, 3:
             self.check(2, initial, ranks)
 
     def test_in_space(self):
@@ -214,7 +214,7 @@ class Outputs(TestCase):
     }
 
     def test_lines(self):
-        results = [run("slab_adaptive", self.SCENE, ranks=n) for n in (1, 2, 3)]
+        results = [run("slab_adaptive", self.SCENE, ranks=n) for n in (1, 3)]
         first = results[0]
         self.assertGreater(first["cells"][-1], 2 * first["cells"][0])
         for index in range(len(first.series("solution"))):

@@ -19,7 +19,9 @@ from harness import SOURCE, TestCase, main, run, scene_file
 from runs import Folder, Job
 from rank_comparison import compare
 
-RANKS = 1, 2, 3, 4
+# Three have a neighbor on either side, four meet at a point; what two show
+# the other tests with ranks do.
+RANKS = 1, 3, 4
 AGREE = 1e-7  # of the largest value of a column
 AGREE_IN_FIELDS = 1e-6  # of the largest value of a field
 
@@ -363,7 +365,7 @@ class Scenes(SameOnAllRanks):
         self.check_group("space", identities=True)
 
     def test_adaptive(self):
-        self.check_group("adaptive", identities=True)
+        self.check_group("adaptive", ranks=(1, 2, 3, 4), identities=True)
 
     def test_opening(self):
         self.check_group("opening", ranks=(1, 3), identities=True)

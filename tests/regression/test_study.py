@@ -40,6 +40,10 @@ ESTIMATES = (
 ).split(",")
 
 
+# No price is wanted beyond the ladders.
+NOTHING_TIMED = {"Study__Target_errors": 1}
+
+
 def announced(text):
     """Names of the runs that were made, in their order."""
     return re.findall(r"^(\w+_h-?\d+_k-?\d+): \d+ cells", text, re.M)
@@ -144,6 +148,7 @@ class Ladders(TestCase):
             Study__Ladders="both",
             Study__Strategies="uniform, adaptive",
             Study__Time_schemes="backward Euler",
+            **NOTHING_TIMED,
         ) as folder:
             process = folder.run("study")
             self.assertEqual(process.returncode, 0, process.stderr)
@@ -183,18 +188,18 @@ class Ladders(TestCase):
         order; steps are counted."""
         with Folder(
             MANUFACTURED / "tresca_2d.prm",
-            Geometry__Global_refinements=1,
+            Geometry__Global_refinements=0,
             Time__Phases="1: 8",
             Step_control__Tolerance=0.1,
             Step_control__Resolve_events="false",
             Study__Levels=3,
-            Study__Target_errors="0.1, 0.05",
+            Study__Target_errors="0.1",
         ) as folder:
             process = folder.run("study")
             self.assertEqual(process.returncode, 0, process.stderr)
             rows = folder.ladder("time")
             self.assertEqual([row["step_tolerance"] for row in rows], [0.1, 0.05, 0.025])
-            self.assertEqual([row["cells"] for row in rows], [1024] * 3)
+            self.assertEqual([row["cells"] for row in rows], [256] * 3)
             steps = np.array([row["steps"] for row in rows])
             print("steps:", steps)
             growth = steps[1:] / steps[:-1]
@@ -226,7 +231,10 @@ class Ladders(TestCase):
                 self.assertIn(part, text)
 
             folder.set(
-                Study__Time_schemes="Heun", Study__Levels=2, Study__Ladders="both"
+                Study__Time_schemes="Heun",
+                Study__Levels=2,
+                Study__Ladders="both",
+                **NOTHING_TIMED,
             )
             process = folder.run("study")
             self.assertEqual(process.returncode, 0, process.stderr)
@@ -242,6 +250,7 @@ class Ladders(TestCase):
             Time__Phases="1: 3",
             Study__Levels=2,
             Study__Ladders="both",
+            **NOTHING_TIMED,
         ) as folder:
             process = folder.run("study")
             self.assertEqual(process.returncode, 0, process.stderr)
@@ -290,27 +299,27 @@ class Ladders(TestCase):
             VERIFICATION / "slab.prm",
             Geometry__Arguments="8, 4 : 0, 0 : 2, 1 : true",
             Time__Phases="1: 4, 2: 4",
-            Error_control__Tolerance=0.05,
+            Error_control__Tolerance=0.1,
             Study__Levels=3,
             Study__Ladders="both",
             Study__Strategies="tolerance, uniform",
-            Study__Target_errors="0.1, 0.05, 1e-5",
+            Study__Target_errors="0.2, 0.1, 1e-5",
             Study__Budget=60,
         ) as folder:
             process = folder.run("study")
             self.assertEqual(process.returncode, 0, process.stderr)
             rows = folder.ladder("both", strategy="tolerance")
             self.assertEqual(
-                [row["tolerance"] for row in rows], [0.2, 0.1, 0.05, 0.025]
+                [row["tolerance"] for row in rows], [0.4, 0.2, 0.1, 0.05]
             )
-            self.assertEqual(rows[-1]["run"], "tolerance_0.025")
+            self.assertEqual(rows[-1]["run"], "tolerance_0.05")
             self.assertTrue(np.isnan(rows[-1]["error_energy"]))
             for row in rows[:-1]:
                 self.assertLess(row["error_energy"], row["tolerance"])
                 self.assertLess(row["estimate_total"], row["tolerance"])
             self.assertLess(rows[2]["error_energy"], 0.6 * rows[1]["error_energy"])
             about = json.loads((folder.study / "study.json").read_text())
-            self.assertEqual(about["reference_run"], "tolerance_0.025")
+            self.assertEqual(about["reference_run"], "tolerance_0.05")
             (fit,) = about["tolerance_fits"]
             self.assertGreater(fit["cells"]["exponent_against_error"], 1.0)
             prices = [p for p in about["prices"] if p["strategy"] == "tolerance"]
@@ -320,11 +329,11 @@ class Ladders(TestCase):
             text = (folder.study / "study.md").read_text()
             self.assertIn("Observed exponents against 1/error", text)
             # The same reference for given meshes, down to the finest of them.
-            folder.set(Study__Strategies="uniform, adaptive")
+            folder.set(Study__Strategies="uniform, adaptive", **NOTHING_TIMED)
             process = folder.run("study")
             self.assertEqual(process.returncode, 0, process.stderr)
             about = json.loads((folder.study / "study.json").read_text())
-            self.assertEqual(about["reference_run"], "tolerance_0.025")
+            self.assertEqual(about["reference_run"], "tolerance_0.05")
             errors = [
                 row["error_energy"]
                 for strategy in ("uniform", "adaptive")
@@ -335,7 +344,7 @@ class Ladders(TestCase):
             # With a smaller tolerance those of before are there already.
             before = folder.finished()
             folder.set(
-                Error_control__Tolerance=0.025,
+                Error_control__Tolerance=0.05,
                 Study__Strategies="tolerance",
                 Study__Budget=600,
             )
@@ -343,9 +352,9 @@ class Ladders(TestCase):
             self.assertEqual(process.returncode, 0, process.stderr)
             after = folder.finished()
             # (Errors of the others are differences to another run now.)
-            self.assertIn("tolerance_0.0125", after)
+            self.assertIn("tolerance_0.025", after)
             self.assertEqual(
-                folder.ladder("both")[-1]["run"], "tolerance_0.0125", list(after)
+                folder.ladder("both")[-1]["run"], "tolerance_0.025", list(after)
             )
             self.assertTrue(set(before) <= set(after))
 
@@ -356,6 +365,7 @@ class Ladders(TestCase):
             Time__Phases="1: 10",
             Study__Levels=3,
             Study__Ladders="both",
+            **NOTHING_TIMED,
         ) as folder:
             process = folder.run("study")
             self.assertEqual(process.returncode, 0, process.stderr)
@@ -392,8 +402,8 @@ class Ladders(TestCase):
             Time__Phases="1: 1, 2: 1",
             Study__Levels=8,
             Study__Ladders="both",
-            Study__Target_errors=1,  # nothing to be timed
-            Study__Budget=20,
+            **NOTHING_TIMED,
+            Study__Budget=12,
         ) as folder:
             process = folder.run("study")
             self.assertEqual(process.returncode, 0, process.stderr)
@@ -420,6 +430,7 @@ class Ladders(TestCase):
             Time__Phases="1: 4",
             Study__Levels=2,
             Study__Ladders="both",
+            **NOTHING_TIMED,
         ) as folder:
             process = folder.run("study", ranks=2)
             self.assertEqual(process.returncode, 0, process.stderr)
@@ -440,7 +451,7 @@ class Resumed(TestCase):
         "Geometry__Global_refinements": 1,
         "Time__Phases": "1: 8",
         "Study__Levels": 3,
-        "Study__Target_errors": 1,  # nothing to be timed beyond the ladders
+        **NOTHING_TIMED,
     }
 
     def wait_for(self, folder, process, n):
@@ -462,7 +473,8 @@ class Resumed(TestCase):
         )
 
     def test_after_kill(self):
-        with Folder(MANUFACTURED / "tresca_2d.prm", **self.SMALL) as folder:
+        coarse = {**self.SMALL, "Geometry__Global_refinements": 0}
+        with Folder(MANUFACTURED / "tresca_2d.prm", **coarse) as folder:
             process = self.start(folder)
             self.wait_for(folder, process, 3)
             process.kill()
@@ -534,10 +546,10 @@ class Refused(TestCase):
     def test_budget(self):
         with Folder(
             MANUFACTURED / "tresca_2d.prm",
-            Geometry__Global_refinements=2,
+            Geometry__Global_refinements=0,
             Study__Levels=9,
             Study__Ladders="both",
-            Study__Budget=3,
+            Study__Budget=5,
         ) as folder:
             process = folder.run("study")
             self.assertEqual(process.returncode, 0, process.stderr)
@@ -549,11 +561,12 @@ class Refused(TestCase):
     def test_unstable_steps_are_named_and_the_study_goes_on(self):
         with Folder(
             MANUFACTURED / "tresca_2d.prm",
-            Geometry__Global_refinements=1,
+            Geometry__Global_refinements=0,
             Material__maxwell__Viscosity=0.02,
             Time__Phases="1: 4",
             Study__Levels=4,
             Study__Ladders="both",
+            **NOTHING_TIMED,
         ) as folder:
             process = folder.run("study")
             self.assertEqual(process.returncode, 0, process.stderr)
@@ -582,18 +595,18 @@ class Refused(TestCase):
 
 
 class Price(TestCase):
-    SCENE = {"Geometry__Global_refinements": 3, "Time__Phases": "1: 32"}
+    SCENE = {"Geometry__Global_refinements": 2, "Time__Phases": "1: 16"}
 
     def test_promise_and_truth(self):
         with Folder(MANUFACTURED / "tresca_2d.prm", **self.SCENE) as folder:
-            process = folder.run("price", "0.05", "--check")
+            process = folder.run("price", "0.1", "--check")
             self.assertEqual(process.returncode, 0, process.stderr)
-            self.assertRegex(process.stdout, r"Error 0\.05: h = .* steps, .* MB")
+            self.assertRegex(process.stdout, r"Error 0\.1: h = .* steps, .* MB")
             self.assertFalse((folder.results / "price" / "statistics.csv").exists())
             pilots = folder.finished()
             self.assertEqual(len(pilots), 4)
             # The same again needs no pilots.
-            process = folder.run("price", "0.05")
+            process = folder.run("price", "0.1")
             self.assertEqual(process.returncode, 0, process.stderr)
             self.assertEqual(folder.finished(), pilots)
             found = re.search(
@@ -602,7 +615,7 @@ class Price(TestCase):
             self.assertTrue(found, process.stdout)
             predicted, actual = map(float, found.groups())
             print("error predicted and found:", predicted, actual)
-            self.assertLessEqual(predicted, 0.0501)
+            self.assertLessEqual(predicted, 0.1001)
             self.assertLess(max(predicted / actual, actual / predicted), 2)
             self.assertRegex(process.stdout, r"seconds +\S+ predicted, \S+ found")
             self.assertTrue((folder.results / "price" / "statistics.csv").exists())
@@ -643,7 +656,7 @@ class Price(TestCase):
             Geometry__Global_refinements=0,
             Time__Phases="1: 16",
         ) as folder:
-            process = folder.run("price", "0.05", "--check", ranks=2)
+            process = folder.run("price", "0.05", "--check")
             self.assertEqual(process.returncode, 0, process.stderr)
             self.assertRegex(process.stdout, r"Error 0\.05: h = .* steps, .* MB")
             pilots = set(folder.finished())
@@ -677,19 +690,19 @@ class Price(TestCase):
 
     def test_of_a_tolerance_beside_one_mesh(self):
         with Folder(
-            MANUFACTURED / "tresca_2d.prm", Error_control__Tolerance=0.1, **self.SCENE
+            MANUFACTURED / "tresca_2d.prm", Error_control__Tolerance=0.15, **self.SCENE
         ) as folder:
-            process = folder.run("price", "0.06")
+            process = folder.run("price", "0.1")
             self.assertEqual(process.returncode, 0, process.stderr)
-            self.assertRegex(process.stdout, r"Error 0\.06: tolerance 0\.\d+, on average")
+            self.assertRegex(process.stdout, r"Error 0\.1: tolerance 0\.\d+, on average")
             self.assertRegex(
                 process.stdout, r"With one uniform mesh and equal steps, .* times as long"
             )
             table = read_statistics(folder.results / "price" / "statistics.csv")
             error = table["error_energy"].max() / table["exact_energy"].max()
-            print("error asked for and found: 0.06", error)
-            self.assertLess(error, 1.2 * 0.06)
-            self.assertGreater(error, 0.06 / 3)
+            print("error asked for and found: 0.1", error)
+            self.assertLess(error, 1.2 * 0.1)
+            self.assertGreater(error, 0.1 / 3)
 
     def test_of_a_quantity(self):
         """The measure is the quantity's, far below that of the energy norm."""
@@ -702,13 +715,13 @@ class Price(TestCase):
             Output__Points="near = 0, 0; held = 2, 1",
             Error_control__Quantity="displacement_x of near",
         ) as folder:
-            process = folder.run("price", "0.01")
+            process = folder.run("price", "0.02")
             self.assertEqual(process.returncode, 0, process.stderr)
             self.assertIn("estimated error of the quantity of interest", process.stdout)
             table = read_statistics(folder.results / "price" / "statistics.csv")
             self.assertLess(
                 table["quantity_total"].max(),
-                1.2 * 0.01 * np.abs(table["point0_x"]).max(),
+                1.2 * 0.02 * np.abs(table["point0_x"]).max(),
             )
             self.assertGreater(
                 table["estimate_total"].max(), 0.05 * table["energy_norm"].max()
@@ -720,12 +733,12 @@ class Price(TestCase):
 
     def test_beyond_the_budget(self):
         with Folder(
-            MANUFACTURED / "tresca_2d.prm", Study__Budget=12, **self.SCENE
+            MANUFACTURED / "tresca_2d.prm", Study__Budget=4, **self.SCENE
         ) as folder:
             process = folder.run("price", "1e-6")
             self.assertEqual(process.returncode, 1)
             self.assertRegex(
-                process.stderr, r"not within 12 s.*smallest error there is about"
+                process.stderr, r"not within 4 s.*smallest error there is about"
             )
 
 

@@ -289,7 +289,7 @@ class Pictures(Folder):
     NAMES = ("convergence.png", "work_precision.png", "cost.png")
 
     def draw(self, *arguments, plot=plot):
-        process = plot(self.folder, *arguments)
+        process = plot(self.folder, *arguments, "--dpi", 50)
         self.assertEqual(process.stderr, "")
         self.assertEqual(process.returncode, 0)
         paths = [Path(line) for line in process.stdout.split("\n") if line]
@@ -371,7 +371,7 @@ class Pictures(Folder):
         ]
         rows = synthetic.rows(variants=variants, levels=5)
         synthetic.write(self.folder, rows, synthetic.about(rows))
-        self.assertEqual(self.draw("--dpi", 50), list(self.NAMES))
+        self.assertEqual(self.draw(), list(self.NAMES))
         study = Study(self.folder)
         groups = study.groups("error_energy")
         self.assertEqual([len(group) for group in groups], [3, 4, 4, 1])
@@ -386,7 +386,7 @@ class Pictures(Folder):
         self.assertIn("of 60 runs", remark)
         found = set(zip(*(study[name][shown] for name in VARIANT)))
         self.assertEqual(found, set(groups[1]))
-        names = self.draw("work-precision", "--all", "--dpi", 50)
+        names = self.draw("work-precision", "--all")
         numbers = ("", "_2", "_3", "_4")
         self.assertEqual(names, [f"work_precision{number}.png" for number in numbers])
 

@@ -660,7 +660,7 @@ class Slip(TestCase):
             "Material 0/Law": "maxwell",
             "Material 0/maxwell/Viscosity": 5,
         }
-        results = [self.slide(ranks=ranks, **adaptive) for ranks in (1, 2, 3)]
+        results = [self.slide(ranks=ranks, **adaptive) for ranks in (1, 3)]
         for result in results:
             self.check_identities(result, 1e-9)
             self.assertGreater(result["slip_area"][-1], 0)

@@ -344,8 +344,7 @@ class Variants(TestCase):
 class Effects(TestCase):
     def test_of_the_slab(self):
         with Case(VERIFICATION / "slab.prm", **SLAB) as scene:
-            process = scene.run("effects")
-            self.assertEqual(process.returncode, 0, process.stderr)
+            process = scene.run("effects", code=0)
             verdicts = scene.verdicts()
             for effect in (
                 ("viscous flow", "elastic"),
@@ -493,8 +492,7 @@ class Effects(TestCase):
             self.assertRegex(
                 alone.stdout, r"friction has never acted: .* at most \d+\.\d+ % of"
             )
-            process = scene.run("effects")
-            self.assertEqual(process.returncode, 0, process.stderr)
+            scene.run("effects", code=0)
             verdicts = scene.verdicts()
             self.assertEqual(verdicts["viscous flow", "elastic"], "never acted")
             self.assertEqual(verdicts["slip on Boundary 2", "never"], "never acted")
@@ -507,8 +505,7 @@ class Effects(TestCase):
             Study__Budget=1e5,
             Error_control__Quantity="contact_force_y",
         ) as scene:
-            process = scene.run("effects")
-            self.assertEqual(process.returncode, 0, process.stderr)
+            scene.run("effects", code=0)
             (effect,) = [
                 effect
                 for effect in scene.about()["effects"]
@@ -532,8 +529,7 @@ class Effects(TestCase):
             Material__maxwell__Viscosity=0.01,
             Time__Scheme="backward Euler",
         ) as scene:
-            process = scene.run("effects")
-            self.assertEqual(process.returncode, 0, process.stderr)
+            scene.run("effects", code=0)
             about = scene.about()
             (failed,) = [
                 effect
@@ -581,8 +577,7 @@ class Effects(TestCase):
             Error_control__Tolerance=0.15,
             Study__Budget=1e5,
         ) as scene:
-            process = scene.run("effects")
-            self.assertEqual(process.returncode, 0, process.stderr)
+            scene.run("effects", code=0)
             verdicts = scene.verdicts()
             self.assertEqual(verdicts["friction on Boundary 2", "none"], "called for")
 
@@ -625,8 +620,7 @@ class Effects(TestCase):
         with Case(
             VERIFICATION / "slab.prm", **SLAB, Step_control__Tolerance=0.05
         ) as scene:
-            process = scene.run("effects", ranks=2)
-            self.assertEqual(process.returncode, 0, process.stderr)
+            scene.run("effects", ranks=2, code=0)
             about = scene.about()
             verdicts = scene.verdicts()
             self.assertEqual(verdicts["friction on Boundary 2", "none"], "called for")
@@ -655,8 +649,7 @@ class Effects(TestCase):
             beam = Path(work) / "beam.prm"
             beam.write_text(as_prm(entries))
             with Case(beam, Study__Budget=1e5) as scene:
-                process = scene.run("effects")
-                self.assertEqual(process.returncode, 0, process.stderr)
+                scene.run("effects", code=0)
                 verdicts = scene.verdicts()
                 for effect in (
                     ("traction on Boundary 1", "none"),
@@ -674,8 +667,7 @@ class Effects(TestCase):
     def test_of_a_budget_that_ends(self):
         """A second is enough for the first run, not for all."""
         with Case(VERIFICATION / "slab.prm", Study__Budget=1) as scene:
-            process = scene.run("effects")
-            self.assertEqual(process.returncode, 0, process.stderr)
+            process = scene.run("effects", code=0)
             about = scene.about()
             self.assertTrue(about["finished"])
             self.assertIn("'Study/Budget'", about["left_out"])

@@ -61,8 +61,7 @@ class Ladders(TestCase):
             Study__Target_errors="0.2, 0.1, 1e-5",
             Study__Budget=200,
         ) as folder:
-            process = folder.run("study")
-            self.assertEqual(process.returncode, 0, process.stderr)
+            process = folder.run("study", code=0)
             rows = folder.rows()
             names = list(rows[0])
             levels = ["mesh_level", "time_level", "tolerance", "step_tolerance"]
@@ -145,8 +144,7 @@ class Ladders(TestCase):
             Study__Strategies="uniform, adaptive",
             Study__Time_schemes="backward Euler",
         ) as folder:
-            process = folder.run("study")
-            self.assertEqual(process.returncode, 0, process.stderr)
+            folder.run("study", code=0)
             self.check_phases(folder)
             uniform = folder.ladder("both", strategy="uniform")[-1]
             adaptive = folder.ladder("both", strategy="adaptive")[-1]
@@ -190,8 +188,7 @@ class Ladders(TestCase):
             Study__Levels=3,
             Study__Target_errors="0.1, 0.05",
         ) as folder:
-            process = folder.run("study")
-            self.assertEqual(process.returncode, 0, process.stderr)
+            folder.run("study", code=0)
             rows = folder.ladder("time")
             self.assertEqual([row["step_tolerance"] for row in rows], [0.1, 0.05, 0.025])
             self.assertEqual([row["cells"] for row in rows], [1024] * 3)
@@ -228,8 +225,7 @@ class Ladders(TestCase):
             folder.set(
                 Study__Time_schemes="Heun", Study__Levels=2, Study__Ladders="both"
             )
-            process = folder.run("study")
-            self.assertEqual(process.returncode, 0, process.stderr)
+            folder.run("study", code=0)
             rows = folder.ladder("both")
             self.assertEqual([row["step_tolerance"] for row in rows], [0.1, 0.025])
             self.assertEqual({row["scheme"] for row in rows}, {"Heun"})
@@ -243,8 +239,7 @@ class Ladders(TestCase):
             Study__Levels=2,
             Study__Ladders="both",
         ) as folder:
-            process = folder.run("study")
-            self.assertEqual(process.returncode, 0, process.stderr)
+            folder.run("study", code=0)
             rows = folder.ladder("both")
             self.assertEqual([row["cells"] for row in rows], [8, 64])
             self.assertLess(rows[1]["error_energy"], rows[0]["error_energy"])
@@ -260,8 +255,7 @@ class Ladders(TestCase):
             Study__Ladders="both",
             Study__Target_errors="0.01",
         ) as folder:
-            process = folder.run("study")
-            self.assertEqual(process.returncode, 0, process.stderr)
+            folder.run("study", code=0)
             timed = sorted(folder.study.glob("*_timing/result.json"))
             self.assertGreater(len(timed), 0)
             # finer than the reference, which is the finest
@@ -297,8 +291,7 @@ class Ladders(TestCase):
             Study__Target_errors="0.1, 0.05, 1e-5",
             Study__Budget=60,
         ) as folder:
-            process = folder.run("study")
-            self.assertEqual(process.returncode, 0, process.stderr)
+            folder.run("study", code=0)
             rows = folder.ladder("both", strategy="tolerance")
             self.assertEqual(
                 [row["tolerance"] for row in rows], [0.2, 0.1, 0.05, 0.025]
@@ -321,8 +314,7 @@ class Ladders(TestCase):
             self.assertIn("Observed exponents against 1/error", text)
             # The same reference for given meshes, down to the finest of them.
             folder.set(Study__Strategies="uniform, adaptive")
-            process = folder.run("study")
-            self.assertEqual(process.returncode, 0, process.stderr)
+            folder.run("study", code=0)
             about = json.loads((folder.study / "study.json").read_text())
             self.assertEqual(about["reference_run"], "tolerance_0.025")
             errors = [
@@ -339,8 +331,7 @@ class Ladders(TestCase):
                 Study__Strategies="tolerance",
                 Study__Budget=600,
             )
-            process = folder.run("study")
-            self.assertEqual(process.returncode, 0, process.stderr)
+            folder.run("study", code=0)
             after = folder.finished()
             # (Errors of the others are differences to another run now.)
             self.assertIn("tolerance_0.0125", after)
@@ -357,8 +348,7 @@ class Ladders(TestCase):
             Study__Levels=3,
             Study__Ladders="both",
         ) as folder:
-            process = folder.run("study")
-            self.assertEqual(process.returncode, 0, process.stderr)
+            folder.run("study", code=0)
             rows = folder.ladder("both")
             self.assertEqual(rows[-1]["run"], "uniform_h3_k3")
             self.assertTrue(np.isnan(rows[-1]["point0_x_error"]))
@@ -395,8 +385,7 @@ class Ladders(TestCase):
             Study__Target_errors=1,  # nothing to be timed
             Study__Budget=20,
         ) as folder:
-            process = folder.run("study")
-            self.assertEqual(process.returncode, 0, process.stderr)
+            process = folder.run("study", code=0)
             found = re.search(
                 r"does not reach the reference run of 8 levels: the ladders have (\d)\.",
                 process.stdout,
@@ -421,8 +410,7 @@ class Ladders(TestCase):
             Study__Levels=2,
             Study__Ladders="both",
         ) as folder:
-            process = folder.run("study", ranks=2)
-            self.assertEqual(process.returncode, 0, process.stderr)
+            folder.run("study", ranks=2, code=0)
             parallel = folder.ladder("both")
             again = folder.run("study", ranks=2)
             self.assertEqual(announced(again.stdout), [])
@@ -470,8 +458,7 @@ class Resumed(TestCase):
             before = folder.finished()
             self.assertGreaterEqual(len(before), 3)
             self.assertLess(len(before), 7)
-            process = folder.run("study")
-            self.assertEqual(process.returncode, 0, process.stderr)
+            process = folder.run("study", code=0)
             after = folder.finished()
             self.assertEqual(len(after), 7)
             self.assertEqual({name: after[name] for name in before}, before)
@@ -539,8 +526,7 @@ class Refused(TestCase):
             Study__Ladders="both",
             Study__Budget=3,
         ) as folder:
-            process = folder.run("study")
-            self.assertEqual(process.returncode, 0, process.stderr)
+            process = folder.run("study", code=0)
             self.assertRegex(process.stdout, r"uniform_h8_k8: left out, it would take")
             text = (folder.study / "study.md").read_text()
             self.assertRegex(text, r"- `uniform_h8_k8`: would take about ")
@@ -555,8 +541,7 @@ class Refused(TestCase):
             Study__Levels=4,
             Study__Ladders="both",
         ) as folder:
-            process = folder.run("study")
-            self.assertEqual(process.returncode, 0, process.stderr)
+            folder.run("study", code=0)
             text = (folder.study / "study.md").read_text()
             self.assertRegex(text, r"`uniform_h0_k0`: failed: Step 1 .*: the time step")
             self.assertIn("uniform_h3_k3", folder.finished())
@@ -586,15 +571,13 @@ class Price(TestCase):
 
     def test_promise_and_truth(self):
         with Folder(MANUFACTURED / "tresca_2d.prm", **self.SCENE) as folder:
-            process = folder.run("price", "0.05", "--check")
-            self.assertEqual(process.returncode, 0, process.stderr)
+            process = folder.run("price", "0.05", "--check", code=0)
             self.assertRegex(process.stdout, r"Error 0\.05: h = .* steps, .* MB")
             self.assertFalse((folder.results / "price" / "statistics.csv").exists())
             pilots = folder.finished()
             self.assertEqual(len(pilots), 4)
             # The same again needs no pilots.
-            process = folder.run("price", "0.05")
-            self.assertEqual(process.returncode, 0, process.stderr)
+            process = folder.run("price", "0.05", code=0)
             self.assertEqual(folder.finished(), pilots)
             found = re.search(
                 r"error +([\d.e-]+) predicted, ([\d.e-]+) found", process.stdout
@@ -622,8 +605,7 @@ class Price(TestCase):
             Step_control__Tolerance=0.025,
             Step_control__Resolve_events="false",
         ) as folder:
-            process = folder.run("price", "0.06")
-            self.assertEqual(process.returncode, 0, process.stderr)
+            process = folder.run("price", "0.06", code=0)
             self.assertIn("  --set 'Step control/Tolerance=", process.stdout)
             for name, factor in ("error", 1.6), ("steps", 1.5):
                 found = re.search(
@@ -643,8 +625,7 @@ class Price(TestCase):
             Geometry__Global_refinements=0,
             Time__Phases="1: 16",
         ) as folder:
-            process = folder.run("price", "0.05", "--check", ranks=2)
-            self.assertEqual(process.returncode, 0, process.stderr)
+            process = folder.run("price", "0.05", "--check", ranks=2, code=0)
             self.assertRegex(process.stdout, r"Error 0\.05: h = .* steps, .* MB")
             pilots = set(folder.finished())
             self.assertLessEqual({"uniform_h0_k-3", "uniform_h0_k-2"}, pilots)
@@ -679,8 +660,7 @@ class Price(TestCase):
         with Folder(
             MANUFACTURED / "tresca_2d.prm", Error_control__Tolerance=0.1, **self.SCENE
         ) as folder:
-            process = folder.run("price", "0.06")
-            self.assertEqual(process.returncode, 0, process.stderr)
+            process = folder.run("price", "0.06", code=0)
             self.assertRegex(process.stdout, r"Error 0\.06: tolerance 0\.\d+, on average")
             self.assertRegex(
                 process.stdout, r"With one uniform mesh and equal steps, .* times as long"
@@ -702,8 +682,7 @@ class Price(TestCase):
             Output__Points="near = 0, 0; held = 2, 1",
             Error_control__Quantity="displacement_x of near",
         ) as folder:
-            process = folder.run("price", "0.01")
-            self.assertEqual(process.returncode, 0, process.stderr)
+            process = folder.run("price", "0.01", code=0)
             self.assertIn("estimated error of the quantity of interest", process.stdout)
             table = read_statistics(folder.results / "price" / "statistics.csv")
             self.assertLess(

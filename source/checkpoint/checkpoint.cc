@@ -263,6 +263,84 @@ namespace Viscoplastic
 
 
 
+  namespace
+  {
+    /// The owned and the ghost cells of this rank, owned ones with their index:
+    /// vertices of owned cells are vertices of owned or ghost cells elsewhere.
+    template <int dim>
+    auto
+    local_cells(const AdmissibleSpace<dim> &space)
+    {
+      std::map<CellId,
+               std::pair<typename DoFHandler<dim>::active_cell_iterator,
+                         std::optional<std::size_t>>>
+        result;
+      for (std::size_t i = 0; i < space.cells.size(); ++i)
+        result[space.cells[i]->id()] = {space.cells[i], i};
+      for (const auto &cell : ghost_cells(space.dof_handler))
+        result[cell->id()] = {cell, std::nullopt};
+      return result;
+    }
+
+
+
+    /// Takes contact at nodes out of what a rank has packed, node by node.
+    class ContactReader
+    {
+    public:
+      /// @p truncation: null if none was packed.
+      ContactReader(const PackedContact &packed,
+                    const ContactLayout &layout,
+                    ContactState        &contact,
+                    FaceTruncation      *truncation)
+        : packed(packed)
+        , layout(layout)
+        , contact(contact)
+        , truncation(truncation)
+      {}
+
+      /// The next node that was packed is @p node, or none of this rank.
+      void
+      read(const std::optional<unsigned int> node)
+      {
+        require(next_node < packed.n_points.size());
+        const unsigned int n_points = packed.n_points[next_node++];
+        const std::size_t  value = next_value, point = next_point;
+        next_point += n_points;
+        next_value += n_points * 5 + (truncation ? 18 : 0);
+        require(next_point <= packed.sticks.size() &&
+                next_value <= packed.values.size());
+        if (!node)
+          return;
+        require(n_points == layout.n_node_points(*node));
+        const double *from = packed.values.data() + value;
+        for_each_value(layout, *node, contact, truncation, [&from](double &to) {
+          to = *from++;
+        });
+        for (unsigned int p = 0; p < n_points; ++p)
+          contact.sticks[layout.first_point[*node] + p] =
+            packed.sticks[point + p];
+      }
+
+      bool
+      is_at_end() const
+      {
+        return next_node == packed.n_points.size() &&
+               next_point == packed.sticks.size() &&
+               next_value == packed.values.size();
+      }
+
+    private:
+      const PackedContact &packed;
+      const ContactLayout &layout;
+      ContactState        &contact;
+      FaceTruncation      *truncation;
+      std::size_t          next_node = 0, next_point = 0, next_value = 0;
+    };
+  } // namespace
+
+
+
   template <int dim>
   bool
   unpack_fields(const PackedFields     &packed,
@@ -273,7 +351,6 @@ namespace Viscoplastic
                 Vector<double>         &squared_estimate)
   {
     AssertDimension(packed.meshes.size(), packed.fields.size());
-    using Cell = typename DoFHandler<dim>::active_cell_iterator;
     const AdmissibleSpace<dim> &space = stress_space.space;
     const auto &triangulation         = space.dof_handler.get_triangulation();
     std::vector<DistributedVector *> targets;
@@ -287,25 +364,8 @@ namespace Viscoplastic
         sampled.push_back(sample_fields(state)[f]);
     const std::size_t n_z = stress_space.n_samples * 6; // a cell and field
 
-    // Vertices of owned cells are vertices of owned or ghost cells elsewhere.
-    struct LocalCell
-    {
-      CellId      id;
-      Cell        cell;
-      std::size_t owned_index;
-    };
-    std::vector<LocalCell> cells;
-    for (const auto &cell : space.cells)
-      cells.push_back({cell->id(), cell, cells.size()});
-    const std::size_t n_owned = cells.size();
-    for (const auto &cell : ghost_cells(space.dof_handler))
-      cells.push_back({cell->id(), cell, 0});
-    std::sort(cells.begin(),
-              cells.end(),
-              [](const LocalCell &a, const LocalCell &b) {
-                return a.id < b.id;
-              });
-
+    const auto                     cells   = local_cells(space);
+    const std::size_t              n_owned = space.cells.size();
     std::vector<DistributedVector> values(n_fields, space.owned_vector());
     for (IrreversibleStress *field : sampled)
       field->resize(n_owned * stress_space.n_samples);
@@ -335,26 +395,21 @@ namespace Viscoplastic
                 points.vertices.size() == (face ? ids.size() : 0) &&
                 samples.size() == sampled.size() * n_z * ids.size() &&
                 estimate.size() == (packed.has_estimate ? ids.size() : 0));
-        std::size_t next = 0, next_node = 0, next_point = 0, next_value = 0;
+        ContactReader of_nodes(points, layout, state.contact, truncation);
+        std::size_t   next = 0;
         for (std::size_t i = 0; i < ids.size(); ++i)
           {
-            const auto local =
-              std::lower_bound(cells.begin(),
-                               cells.end(),
-                               ids[i],
-                               [](const LocalCell &a, const CellId &b) {
-                                 return a.id < b;
-                               });
-            const bool is_here = local != cells.end() && local->id == ids[i];
+            const auto found    = cells.find(ids[i]);
+            const bool is_known = found != cells.end();
             for (unsigned int v = 0; v < GeometryInfo<dim>::vertices_per_cell;
                  ++v)
               if ((vertices[i] >> v & 1) != 0)
                 {
                   require(next + n_fields * dim <= nodal.size());
-                  const auto dof = is_here ?
-                                     local->cell->vertex_dof_index(v, 0) :
-                                     numbers::invalid_dof_index;
-                  if (is_here && space.owned.is_element(dof))
+                  const auto dof =
+                    is_known ? found->second.first->vertex_dof_index(v, 0) :
+                               numbers::invalid_dof_index;
+                  if (is_known && space.owned.is_element(dof))
                     {
                       const auto first = space.owned.index_within_set(dof);
                       for (unsigned int f = 0; f < n_fields; ++f)
@@ -370,43 +425,27 @@ namespace Viscoplastic
                  ++v)
               if ((points.vertices[i] >> v & 1) != 0)
                 {
-                  require(next_node < points.n_points.size());
-                  const unsigned int n_points = points.n_points[next_node++];
-                  const std::size_t  value = next_value, point = next_point;
-                  next_point += n_points;
-                  next_value += n_points * 5 + (truncation ? 18 : 0);
-                  require(next_point <= points.sticks.size() &&
-                          next_value <= points.values.size());
-                  if (!is_here)
-                    continue;
                   const auto node =
-                    face_nodes.find(local->cell->vertex_dof_index(v, 0));
-                  if (node == face_nodes.end())
-                    continue;
-                  const unsigned int n = node->second;
-                  require(n_points == layout.n_node_points(n));
-                  const double *from = points.values.data() + value;
-                  for_each_value(layout,
-                                 n,
-                                 state.contact,
-                                 truncation,
-                                 [&from](double &to) { to = *from++; });
-                  for (unsigned int p = 0; p < n_points; ++p)
-                    state.contact.sticks[layout.first_point[n] + p] =
-                      points.sticks[point + p];
-                  ++n_face_nodes;
+                    is_known ? face_nodes.find(
+                                 found->second.first->vertex_dof_index(v, 0)) :
+                               face_nodes.end();
+                  const bool is_here = node != face_nodes.end();
+                  of_nodes.read(is_here ? std::optional(node->second) :
+                                          std::nullopt);
+                  n_face_nodes += is_here;
                 }
-            if (!is_here || !local->cell->is_locally_owned())
+            if (!is_known || !found->second.second)
               continue;
+            const std::size_t owned_index = *found->second.second;
             ++n_cells;
             for (std::size_t f = 0; f < sampled.size(); ++f)
               for (std::size_t j = 0; j < n_z; ++j)
-                (*sampled[f])[local->owned_index * stress_space.n_samples +
-                              j / 6]
+                (*sampled[f])[owned_index * stress_space.n_samples + j / 6]
                   .begin_raw()[j % 6] =
                   samples[(i * sampled.size() + f) * n_z + j];
             if (packed.has_estimate)
-              squared_estimate[local->cell->active_cell_index()] = estimate[i];
+              squared_estimate[found->second.first->active_cell_index()] =
+                estimate[i];
           }
         if (space.axial)
           {
@@ -416,9 +455,7 @@ namespace Viscoplastic
               values[f].begin()[*axial] = nodal[next + f];
             next += n_fields;
           }
-        require(next == nodal.size() && next_node == points.n_points.size() &&
-                next_point == points.sticks.size() &&
-                next_value == points.values.size());
+        require(next == nodal.size() && of_nodes.is_at_end());
       }
 
     for (unsigned int f = 0; f < n_fields; ++f)

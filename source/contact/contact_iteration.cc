@@ -76,7 +76,7 @@ namespace Viscoplastic
       for (unsigned int p = 0; p < face.points.size(); ++p)
         {
           const ContactLayout::Point &point = face.points[p];
-          if (point.is_obstacle || state.sticks[p] || state.bound[p] == 0.)
+          if (!state.slips(point, p))
             continue;
           const unsigned int node = point.node;
           const Tensor<1, 3> here = face.node_values(x, node);

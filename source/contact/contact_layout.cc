@@ -139,6 +139,20 @@ namespace Viscoplastic
 
 
 
+  Tensor<1, 2>
+  ContactState::multiplier_of_slip(const ContactLayout::Point &point,
+                                   const unsigned int          p) const
+  {
+    Tensor<1, 2> result;
+    if (point.is_obstacle)
+      result[0] = point.compliance.force(penetration(p));
+    else if (const double size = slip[p].norm(); slips(point, p) && size > 0.)
+      result = slip[p] * (bound[p] / size);
+    return result;
+  }
+
+
+
   bool
   FaceTruncation::blocks_as(const FaceTruncation &other,
                             const ContactLayout  &face) const

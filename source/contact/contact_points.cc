@@ -36,15 +36,6 @@ namespace Viscoplastic
 
 
 
-    /// The force of slipping points at the current slip: rho s/|s|.
-    Tensor<1, 2>
-    slipping_multiplier(const double bound, const Tensor<1, 2> &s)
-    {
-      return bound == 0. ? Tensor<1, 2>() : s * (bound / s.norm());
-    }
-
-
-
     Tensor<1, 2>
     clip(const Tensor<1, 2> &multiplier, const double bound)
     {
@@ -125,15 +116,13 @@ namespace Viscoplastic
 
   namespace
   {
-    /// The same for an obstacle: the smallest multiplier that keeps the free
-    /// motion within its distance, or the force at which compliance stops it.
+    /// The same for an obstacle that would be passed by @p free_w: the smallest
+    /// multiplier that stops it there, or the force at which compliance does.
     PointSolution
     solve_obstacle(const ContactLayout::Point &obstacle,
                    const double                flexibility,
-                   const double                free_motion,
-                   const double                distance)
+                   const double                free_w)
     {
-      const double  free_w = free_motion - distance;
       PointSolution solution;
       solution.sticks = free_w > 0.;
       if (solution.sticks)
@@ -144,9 +133,6 @@ namespace Viscoplastic
             free_w / flexibility;
       return solution;
     }
-
-
-
   } // namespace
 
 
@@ -166,14 +152,14 @@ namespace Viscoplastic
         of_point[i][j] = point.map[i] * (flexibility * point.map[j]);
     const Tensor<1, 2> free_motion =
       state.slip_with(point, p, start + flexibility * force);
-    return point.is_obstacle ? solve_obstacle(point,
-                                              of_point[0][0],
-                                              free_motion[0],
-                                              state.bound[p]) :
-                               solve_friction_point(of_point,
-                                                    free_motion,
-                                                    point.n_tangents,
-                                                    state.bound[p]);
+    if (point.is_obstacle)
+      return solve_obstacle(point,
+                            of_point[0][0],
+                            free_motion[0] - state.bound[p]);
+    return solve_friction_point(of_point,
+                                free_motion,
+                                point.n_tangents,
+                                state.bound[p]);
   }
 
 
@@ -330,15 +316,11 @@ namespace Viscoplastic
               Tensor<1, 2>               &multiplier = state.multiplier[p];
               if (law != nullptr && !point.is_obstacle)
                 state.bound[p] = law->bound(face, state, p);
-              multiplier = Tensor<1, 2>();
-              if (point.gives_way())
-                multiplier[0] = point.compliance.force(state.penetration(p));
-              else if (state.sticks[p])
-                multiplier = clip(point,
+              multiplier = state.blocks(point, p) ?
+                             clip(point,
                                   nearest_multiplier(point, missing),
-                                  state.bound[p]);
-              else if (!point.is_obstacle)
-                multiplier = slipping_multiplier(state.bound[p], state.slip[p]);
+                                  state.bound[p]) :
+                             state.multiplier_of_slip(point, p);
               missing -= node_force(point, multiplier);
             }
         else
@@ -408,8 +390,7 @@ namespace Viscoplastic
     for (unsigned int p = 0; p < face.points.size(); ++p)
       {
         const ContactLayout::Point &point = face.points[p];
-        if (point.is_obstacle || point.n_tangents != 2 || state.sticks[p] ||
-            state.bound[p] == 0.)
+        if (point.n_tangents != 2 || !state.slips(point, p))
           continue;
         const Tensor<1, 3> here = face.node_values(result.force, point.node);
         const Tensor<1, 2> missing =
@@ -486,7 +467,7 @@ namespace Viscoplastic
     for (unsigned int p = face.first_point[node]; p < face.first_obstacle(node);
          ++p)
       if (const ContactLayout::Point &point = face.points[p];
-          !state.sticks[p] && point.n_tangents == 2 && state.bound[p] > 0.)
+          point.n_tangents == 2 && state.slips(point, p))
         {
           // kappa P_e with kappa = rho/|s|, which tends to infinity as a
           // point comes to rest.
@@ -531,7 +512,7 @@ namespace Viscoplastic
                              node,
                              inverse_diagonal,
                              stiffest);
-            else if (state.sticks[p])
+            else if (state.blocks(point, p))
               for (unsigned int i = 0; i < point.n_tangents; ++i)
                 {
                   // Remove what is left of this direction.

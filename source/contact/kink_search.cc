@@ -81,8 +81,7 @@ namespace Viscoplastic
           if (point.gives_way())
             line.springs.push_back(
               {point.compliance, state.penetration(p), change()[0]});
-          else if (!point.is_obstacle && !state.sticks[p] &&
-                   state.bound[p] > 0.)
+          else if (state.slips(point, p))
             line.terms.push_back({state.bound[p], state.slip[p], change()});
         }
       return line;
@@ -142,8 +141,7 @@ namespace Viscoplastic
       if (!face.has_obstacles)
         return result;
       for (unsigned int p = 0; p < face.points.size(); ++p)
-        if (face.points[p].is_obstacle && !face.points[p].gives_way() &&
-            !state.sticks[p])
+        if (face.points[p].is_rigid_obstacle() && !state.sticks[p])
           {
             const Approach to = approach(face, state, w, p);
             if (to.goes > 0.)
@@ -436,8 +434,7 @@ namespace Viscoplastic
         if (!(first < least))
           return result;
         for (unsigned int p = 0; p < face.points.size(); ++p)
-          if (face.points[p].is_obstacle && !face.points[p].gives_way() &&
-              !held.sticks[p])
+          if (face.points[p].is_rigid_obstacle() && !held.sticks[p])
             {
               const Approach to = approach(face, state, result.correction, p);
               held.sticks[p] = to.goes > 0. && to.may <= near * first * to.goes;

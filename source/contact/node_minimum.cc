@@ -112,7 +112,7 @@ namespace Viscoplastic
                      (point.is_obstacle ? -state.bound[p] :
                                           state.foundation_step[p].norm()) /
                        point.map[0].norm());
-          if (has_friction(p) || (point.is_obstacle && !point.gives_way()))
+          if (has_friction(p) || point.is_rigid_obstacle())
             holders.push_back(p);
         }
       negligible = std::max(rounding * size, 1e-100);
@@ -385,7 +385,7 @@ namespace Viscoplastic
         state.sticks[p] =
           point.gives_way() ? s[0] > state.bound[p] : best->is_held[p - begin];
         state.multiplier[p] = Tensor<1, 2>();
-        if (!point.is_obstacle && !state.sticks[p] && state.bound[p] > 0.)
+        if (state.slips(point, p))
           state.multiplier[p] = s * (state.bound[p] / s.norm());
       }
     return best->x;

@@ -343,7 +343,7 @@ namespace Viscoplastic
     };
     FullMatrix<double> prevented(n, n);
     for (unsigned int p = 0; p < face.points.size(); ++p)
-      if (!face.points[p].gives_way() && contact.sticks[p])
+      if (contact.blocks(face.points[p], p))
         add(prevented, p, 1.);
     Utilities::MPI::sum(prevented, face.communicator, prevented);
     std::vector<Generalized> free;
@@ -363,17 +363,10 @@ namespace Viscoplastic
         FullMatrix<double> stiffness(n, n);
         for (unsigned int p = 0; p < face.points.size(); ++p)
           {
-            const Tensor<1, 2> &s = state.slip[p];
-            Tensor<1, 2>        multiplier;
-            if (face.points[p].gives_way())
-              {
-                const NormalCompliance &compliance = face.points[p].compliance;
-                multiplier[0] = compliance.force(state.penetration(p));
-                add(stiffness, p, compliance.slope(state.penetration(p)));
-              }
-            else if (!face.points[p].is_obstacle && !state.sticks[p] &&
-                     state.bound[p] > 0. && s.norm() > 0.)
-              multiplier = state.bound[p] / s.norm() * s;
+            const ContactLayout::Point &point = face.points[p];
+            const Tensor<1, 2> multiplier = state.multiplier_of_slip(point, p);
+            if (point.gives_way())
+              add(stiffness, p, point.compliance.slope(state.penetration(p)));
             for (unsigned int i = 0; i < n; ++i)
               force[i] -= multiplier * works[p][i];
           }

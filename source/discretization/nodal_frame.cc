@@ -151,6 +151,173 @@ namespace Viscoplastic
         std::swap(result.map[frame.fixed[i]], result.fixed[frame.fixed[i]]);
       return result;
     }
+
+
+
+    template <int dim>
+    using Conditions = std::vector<const BoundaryCondition<dim> *>;
+
+
+
+    /// The normal of a piece at a node where that of curved ones is @p varying.
+    template <int dim>
+    const Tensor<1, dim> &
+    normal_of(const BoundaryCondition<dim> &condition,
+              const Tensor<1, dim>         &varying)
+    {
+      return condition.normal_varies ? varying : condition.normal;
+    }
+
+
+
+    /// The directions that conditions fix, as those of @p frame and the first
+    /// ones of the @p basis. Where conditions compete, what fixes more comes
+    /// first.
+    template <int dim>
+    void
+    fix_directions(const Conditions<dim> &conditions,
+                   const Tensor<1, dim>  &varying_normal,
+                   NodalFrame<dim>       &frame,
+                   Basis<dim>            &basis)
+    {
+      const auto require = [&](const Tensor<1, dim>    &direction,
+                               const types::boundary_id id,
+                               const unsigned int       component) {
+        if (!basis.add(direction))
+          return;
+        frame.condition_direction[frame.n_fixed] = direction;
+        frame.condition_boundary[frame.n_fixed]  = id;
+        frame.condition_component[frame.n_fixed] = component;
+        ++frame.n_fixed;
+      };
+      const auto require_axes = [&](const auto &which, const auto &has_axis) {
+        for (const auto *condition : conditions)
+          if (which(*condition))
+            for (unsigned int d = 0; d < dim; ++d)
+              if (has_axis(*condition, d))
+                require(axis<dim>(d), condition->id, d);
+      };
+      const auto all_axes = [](const auto &, const unsigned int) {
+        return true;
+      };
+      const auto prescribed = [](const auto &condition, const unsigned int d) {
+        return condition.displacement[d].has_value();
+      };
+      require_axes([](
+                     const auto &c) { return c.role == BoundaryRole::clamped; },
+                   all_axes);
+      require_axes([](const auto &c) { return c.id < first_support_id; },
+                   prescribed);
+      require_axes([](const auto &c) { return c.is_glued() && !c.against; },
+                   all_axes);
+      for (const BoundaryRole role :
+           {BoundaryRole::symmetry, BoundaryRole::contact})
+        for (const auto *condition : conditions)
+          if (condition->role == role && condition->is_bilateral() &&
+              !condition->is_glued())
+            require(normal_of(*condition, varying_normal),
+                    condition->id,
+                    numbers::invalid_unsigned_int);
+      require_axes([](const auto &c) { return c.id >= first_support_id; },
+                   prescribed);
+      // What else holds a node holds it against the ground.
+      require_axes([](const auto &c) { return c.is_glued() && c.against; },
+                   all_axes);
+    }
+
+
+
+    /// Complete the basis by the axes that are least represented.
+    template <int dim>
+    void
+    complete(Basis<dim> &basis)
+    {
+      while (basis.directions.size() < dim)
+        {
+          unsigned int best   = 0;
+          double       length = -1.;
+          for (unsigned int d = 0; d < dim; ++d)
+            {
+              Tensor<1, dim> v = axis<dim>(d);
+              for (const auto &q : basis.directions)
+                v -= (v * q) * q;
+              if (v.norm() > length)
+                {
+                  length = v.norm();
+                  best   = d;
+                }
+            }
+          basis.add(axis<dim>(best));
+        }
+    }
+
+
+
+    /// The friction points of a node with this frame.
+    template <int dim>
+    void
+    add_planes(const Conditions<dim> &conditions,
+               const Tensor<1, dim>  &varying_normal,
+               NodalFrame<dim>       &frame)
+    {
+      std::vector<SymmetricTensor<2, dim>> forms;
+      Conditions<dim>                      first_of_point;
+      for (const auto *condition : conditions)
+        if (condition->has_friction())
+          {
+            SymmetricTensor<2, dim>  form;
+            const FrictionPlane<dim> plane =
+              make_plane(frame,
+                         normal_of(*condition, varying_normal),
+                         condition->id,
+                         form);
+            if (plane.n_tangents == 0)
+              continue;
+            // Pieces with the same slip share one point, if it is slip against
+            // the same foundation.
+            unsigned int p = 0;
+            while (p < forms.size() &&
+                   ((forms[p] - form).norm() > 1e-10 ||
+                    !move_alike(frame, *first_of_point[p], *condition)))
+              ++p;
+            if (p < forms.size())
+              frame.planes[p].boundary_ids.push_back(condition->id);
+            else
+              {
+                forms.push_back(form);
+                first_of_point.push_back(condition);
+                frame.planes.push_back(plane);
+              }
+          }
+    }
+
+
+
+    /// The obstacles of a node with this frame.
+    template <int dim>
+    void
+    add_obstacles(const Conditions<dim> &conditions,
+                  const Tensor<1, dim>  &varying_normal,
+                  NodalFrame<dim>       &frame)
+    {
+      for (const auto *condition : conditions)
+        if (condition->is_unilateral())
+          {
+            Obstacle<dim> obstacle =
+              make_obstacle(frame, normal_of(*condition, varying_normal));
+            if (obstacle.map.norm() < parallel_tolerance)
+              continue; // other conditions hold it
+            obstacle.gives_way = condition->gives_way();
+            unsigned int o     = 0;
+            while (o < frame.obstacles.size() &&
+                   (obstacle.gives_way != frame.obstacles[o].gives_way ||
+                    (frame.obstacles[o].map - obstacle.map).norm() > 1e-10))
+              ++o;
+            if (o == frame.obstacles.size())
+              frame.obstacles.push_back(obstacle);
+            frame.obstacles[o].boundary_ids.push_back(condition->id);
+          }
+    }
   } // namespace
 
 
@@ -161,56 +328,9 @@ namespace Viscoplastic
     const std::vector<const BoundaryCondition<dim> *> &conditions,
     const Tensor<1, dim>                              &varying_normal)
   {
-    const auto normal_of = [&](const BoundaryCondition<dim> &condition) {
-      return condition.normal_varies ? varying_normal : condition.normal;
-    };
     NodalFrame<dim> frame;
     Basis<dim>      basis;
-    const auto      require = [&](const Tensor<1, dim>    &direction,
-                             const types::boundary_id id,
-                             const unsigned int       component) {
-      if (!basis.add(direction))
-        return;
-      frame.condition_direction[frame.n_fixed] = direction;
-      frame.condition_boundary[frame.n_fixed]  = id;
-      frame.condition_component[frame.n_fixed] = component;
-      ++frame.n_fixed;
-    };
-    const auto require_components =
-      [&](const BoundaryCondition<dim> &condition) {
-        for (unsigned int d = 0; d < dim; ++d)
-          if (condition.displacement[d])
-            require(axis<dim>(d), condition.id, d);
-      };
-    // Where conditions compete, what fixes more comes first.
-    for (const auto *condition : conditions)
-      if (condition->role == BoundaryRole::clamped)
-        for (unsigned int d = 0; d < dim; ++d)
-          require(axis<dim>(d), condition->id, d);
-    for (const auto *condition : conditions)
-      if (condition->id < first_support_id)
-        require_components(*condition);
-    const auto require_glue = [&](const bool to_other_body) {
-      for (const auto *condition : conditions)
-        if (condition->is_glued() &&
-            condition->against.has_value() == to_other_body)
-          for (unsigned int d = 0; d < dim; ++d)
-            require(axis<dim>(d), condition->id, d);
-    };
-    require_glue(false);
-    for (const BoundaryRole role :
-         {BoundaryRole::symmetry, BoundaryRole::contact})
-      for (const auto *condition : conditions)
-        if (condition->role == role && condition->is_bilateral() &&
-            !condition->is_glued())
-          require(normal_of(*condition),
-                  condition->id,
-                  numbers::invalid_unsigned_int);
-    for (const auto *condition : conditions)
-      if (condition->id >= first_support_id)
-        require_components(*condition);
-    // What else holds a node holds it against the ground.
-    require_glue(true);
+    fix_directions(conditions, varying_normal, frame, basis);
 
     // The normals of pieces with given normal stress or unilateral contact come
     // next, so that the slip of a single piece is made of single components.
@@ -220,8 +340,8 @@ namespace Viscoplastic
     for (const auto *condition : conditions)
       if (condition->has_contact_points())
         {
-          all_axes &= is_axis(normal_of(*condition));
-          basis.add(normal_of(*condition));
+          all_axes &= is_axis(normal_of(*condition, varying_normal));
+          basis.add(normal_of(*condition, varying_normal));
         }
 
     if (all_axes || frame.n_fixed == dim)
@@ -240,74 +360,15 @@ namespace Viscoplastic
     else
       {
         frame.is_cartesian = false;
-        // Complete by the axes that are least represented.
-        while (basis.directions.size() < dim)
-          {
-            unsigned int best   = 0;
-            double       length = -1.;
-            for (unsigned int d = 0; d < dim; ++d)
-              {
-                Tensor<1, dim> v = axis<dim>(d);
-                for (const auto &q : basis.directions)
-                  v -= (v * q) * q;
-                if (v.norm() > length)
-                  {
-                    length = v.norm();
-                    best   = d;
-                  }
-              }
-            basis.add(axis<dim>(best));
-          }
+        complete(basis);
         for (unsigned int j = 0; j < dim; ++j)
           for (unsigned int i = 0; i < dim; ++i)
             frame.directions[i][j] = basis.directions[j][i];
         for (unsigned int i = 0; i < frame.n_fixed; ++i)
           frame.fixed[i] = i;
       }
-
-    std::vector<SymmetricTensor<2, dim>>        forms;
-    std::vector<const BoundaryCondition<dim> *> first_of_point;
-    for (const auto *condition : conditions)
-      if (condition->has_friction())
-        {
-          SymmetricTensor<2, dim>  form;
-          const FrictionPlane<dim> plane =
-            make_plane(frame, normal_of(*condition), condition->id, form);
-          if (plane.n_tangents == 0)
-            continue;
-          // Pieces with the same slip share one point, if it is slip against
-          // the same foundation.
-          unsigned int p = 0;
-          while (p < forms.size() &&
-                 ((forms[p] - form).norm() > 1e-10 ||
-                  !move_alike(frame, *first_of_point[p], *condition)))
-            ++p;
-          if (p < forms.size())
-            frame.planes[p].boundary_ids.push_back(condition->id);
-          else
-            {
-              forms.push_back(form);
-              first_of_point.push_back(condition);
-              frame.planes.push_back(plane);
-            }
-        }
-
-    for (const auto *condition : conditions)
-      if (condition->is_unilateral())
-        {
-          Obstacle<dim> obstacle = make_obstacle(frame, normal_of(*condition));
-          if (obstacle.map.norm() < parallel_tolerance)
-            continue; // other conditions hold it
-          obstacle.gives_way = condition->gives_way();
-          unsigned int o     = 0;
-          while (o < frame.obstacles.size() &&
-                 (obstacle.gives_way != frame.obstacles[o].gives_way ||
-                  (frame.obstacles[o].map - obstacle.map).norm() > 1e-10))
-            ++o;
-          if (o == frame.obstacles.size())
-            frame.obstacles.push_back(obstacle);
-          frame.obstacles[o].boundary_ids.push_back(condition->id);
-        }
+    add_planes(conditions, varying_normal, frame);
+    add_obstacles(conditions, varying_normal, frame);
     return frame;
   }
 

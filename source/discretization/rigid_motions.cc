@@ -62,6 +62,46 @@ namespace Viscoplastic
 
 
 
+    /// Whether friction or an obstacle of a frame sees motions along one of its
+    /// directions.
+    template <int dim>
+    bool
+    contact_sees(const Scene<dim>      &scene,
+                 const NodalFrame<dim> &frame,
+                 const unsigned int     direction)
+    {
+      const auto has_friction = [&scene](const types::boundary_id id) {
+        return !scene.boundary.at(id).friction_vanishes();
+      };
+      for (const FrictionPlane<dim> &plane : frame.planes)
+        for (const auto &row : plane.map)
+          if (row[direction] != 0. && std::any_of(plane.boundary_ids.begin(),
+                                                  plane.boundary_ids.end(),
+                                                  has_friction))
+            return true;
+      for (const Obstacle<dim> &obstacle : frame.obstacles)
+        if (obstacle.map[direction] != 0.)
+          return true;
+      return false;
+    }
+
+
+
+    /// A ring resists all of its plane motions but that along its axis.
+    void
+    resist_as_ring(SeenMotions &seen, const unsigned int n_motions)
+    {
+      for (unsigned int motion = 0; motion < n_motions; ++motion)
+        if (motion % n_rigid_motions<2> != 1)
+          {
+            RigidMotion row(n_motions, 0.);
+            row[motion] = 1.;
+            seen.add(row);
+          }
+    }
+
+
+
     /// The sentence that refuses a scene which leaves @p motions free.
     template <int dim>
     std::string
@@ -168,22 +208,6 @@ namespace Viscoplastic
                -(coupling.projector * direction));
       to.add(row);
     };
-    const auto sees_contact = [this](const NodalFrame<dim> &frame,
-                                     const unsigned int     d) {
-      bool seen = false;
-      for (const FrictionPlane<dim> &plane : frame.planes)
-        for (const auto &row : plane.map)
-          seen |=
-            row[d] != 0. &&
-            std::any_of(plane.boundary_ids.begin(),
-                        plane.boundary_ids.end(),
-                        [this](const auto id) {
-                          return !scene.boundary.at(id).friction_vanishes();
-                        });
-      for (const Obstacle<dim> &obstacle : frame.obstacles)
-        seen |= obstacle.map[d] != 0.;
-      return seen;
-    };
     for (std::size_t m = 0; m < nodes.size(); ++m)
       for (unsigned int i = 0; i < frames[nodes[m].frame].n_fixed; ++i)
         for (const unsigned int part : parts.of_node[m])
@@ -193,16 +217,9 @@ namespace Viscoplastic
                           column(frames[nodes[m].frame].directions,
                                  frames[nodes[m].frame].fixed[i]));
 
-    // A ring resists all but the translation along its axis.
     if (scene.is_axisymmetric())
       for (SeenMotions &of_part : seen)
-        for (unsigned int motion = 0; motion < n_together; ++motion)
-          if (motion % n_motions != 1)
-            {
-              RigidMotion row(n_together, 0.);
-              row[motion] = 1.;
-              of_part.add(row);
-            }
+        resist_as_ring(of_part, n_together);
 
     if (scene.has_springs())
       {
@@ -232,7 +249,7 @@ namespace Viscoplastic
           {
             for (std::size_t m = 0; m < nodes.size(); ++m)
               for (unsigned int d = 0; d < dim; ++d)
-                if (sees_contact(frames[nodes[m].frame], d))
+                if (contact_sees(scene, frames[nodes[m].frame], d))
                   add_row_of_node(with_contact,
                                   *parts.of_node[m].begin(),
                                   nodes[m],

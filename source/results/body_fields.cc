@@ -107,6 +107,34 @@ namespace Viscoplastic
 
 
   template <int dim>
+  std::set<RecordedField>
+  BodyFields<dim>::of_output(const Scene<dim> &scene)
+  {
+    std::set<RecordedField> result{RecordedField::stress,
+                                   RecordedField::von_mises_stress};
+    const auto add_if = [&](const bool condition, const RecordedField field) {
+      if (condition)
+        result.insert(field);
+    };
+    add_if(scene.has_irreversible_stress(), RecordedField::irreversible_stress);
+    add_if(scene.has_history(), RecordedField::history);
+    add_if(scene.temperature != nullptr, RecordedField::temperature);
+    const OutputParameters &asked = scene.parameters.output;
+    add_if(asked.has(AdditionalField::total_strain),
+           RecordedField::total_strain);
+    add_if(asked.has(AdditionalField::irreversible_strain),
+           RecordedField::irreversible_strain);
+    add_if(asked.has(AdditionalField::creep_strain),
+           RecordedField::creep_strain);
+    add_if(asked.has(AdditionalField::creep_rate), RecordedField::creep_rate);
+    add_if(asked.has(AdditionalField::principal_stresses),
+           RecordedField::principal_stresses);
+    return result;
+  }
+
+
+
+  template <int dim>
   std::vector<std::string>
   BodyFields<dim>::names(const std::set<RecordedField> &fields)
   {

@@ -161,6 +161,32 @@ namespace Viscoplastic
 
 
   template <int dim>
+  std::set<RecordedField>
+  BoundaryFields<dim>::of_output(const Scene<dim>       &scene,
+                                 const ContactFace<dim> *face)
+  {
+    const OutputParameters &asked = scene.parameters.output;
+    std::set<RecordedField> result{RecordedField::slip,
+                                   RecordedField::slip_rate};
+    if (scene.has_unilateral_contact())
+      result.insert({RecordedField::contact_pressure, RecordedField::gap});
+    if (face != nullptr && scene.has_friction())
+      {
+        result.insert({RecordedField::traction,
+                       RecordedField::bound,
+                       RecordedField::utilization,
+                       RecordedField::stick});
+        if (asked.has(AdditionalField::friction_work))
+          result.insert(RecordedField::friction_work);
+      }
+    if (asked.has(AdditionalField::normal_traction))
+      result.insert(RecordedField::normal_traction);
+    return result;
+  }
+
+
+
+  template <int dim>
   std::string
   BoundaryFields<dim>::name(const RecordedField field)
   {

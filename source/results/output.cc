@@ -21,66 +21,6 @@ namespace Viscoplastic
 {
   namespace
   {
-    /// The fields of the body that its output has, but for the nodal ones.
-    template <int dim>
-    std::set<RecordedField>
-    fields_of_body(const Scene<dim> &scene)
-    {
-      std::set<RecordedField> result{RecordedField::stress,
-                                     RecordedField::von_mises_stress};
-      if (scene.has_irreversible_stress())
-        result.insert(RecordedField::irreversible_stress);
-      if (scene.has_history())
-        result.insert(RecordedField::history);
-      if (scene.temperature)
-        result.insert(RecordedField::temperature);
-      for (const auto &[asked, field] :
-           {std::make_pair(AdditionalField::total_strain,
-                           RecordedField::total_strain),
-            std::make_pair(AdditionalField::irreversible_strain,
-                           RecordedField::irreversible_strain),
-            std::make_pair(AdditionalField::creep_strain,
-                           RecordedField::creep_strain),
-            std::make_pair(AdditionalField::creep_rate,
-                           RecordedField::creep_rate),
-            std::make_pair(AdditionalField::principal_stresses,
-                           RecordedField::principal_stresses)})
-        if (scene.parameters.output.has(asked))
-          result.insert(field);
-      return result;
-    }
-
-
-
-    /// The fields of Gamma_3 but for the displacement.
-    template <int dim>
-    std::set<RecordedField>
-    fields_of_contact(const Scene<dim> &scene, const ContactFace<dim> *face)
-    {
-      const OutputParameters &asked = scene.parameters.output;
-      std::set<RecordedField> result{RecordedField::slip,
-                                     RecordedField::slip_rate};
-      if (scene.has_unilateral_contact())
-        for (const RecordedField field :
-             {RecordedField::contact_pressure, RecordedField::gap})
-          result.insert(field);
-      if (face != nullptr && scene.has_friction())
-        {
-          for (const RecordedField field : {RecordedField::traction,
-                                            RecordedField::bound,
-                                            RecordedField::utilization,
-                                            RecordedField::stick})
-            result.insert(field);
-          if (asked.has(AdditionalField::friction_work))
-            result.insert(RecordedField::friction_work);
-        }
-      if (asked.has(AdditionalField::normal_traction))
-        result.insert(RecordedField::normal_traction);
-      return result;
-    }
-
-
-
     /// The name of an output without its ending.
     std::string
     record_name(const std::string &series, const unsigned int n)
@@ -457,7 +397,7 @@ namespace Viscoplastic
                              is_vector);
 
     // The same fields on all ranks, also on those without cells.
-    const std::set<RecordedField>  fields = fields_of_body(scene);
+    const std::set<RecordedField>  fields = BodyFields<dim>::of_output(scene);
     const BodyFields<dim>          means(laws, state, fields);
     const std::vector<std::string> names = BodyFields<dim>::names(fields);
     std::vector<Vector<double>>    values(names.size(),
@@ -535,11 +475,12 @@ namespace Viscoplastic
                              const State<dim>       &state,
                              const ContactFace<dim> *face)
   {
-    const AdmissibleSpace<dim>   &space  = stress_space.space;
-    const std::set<RecordedField> fields = fields_of_contact(scene, face);
-    const BoundaryFields<dim>     boundary(stress_space, state, face, fields);
-    PatchOutput<dim - 1, dim>     output;
-    const auto                    add_scalar = [&](const std::string &name) {
+    const AdmissibleSpace<dim>   &space = stress_space.space;
+    const std::set<RecordedField> fields =
+      BoundaryFields<dim>::of_output(scene, face);
+    const BoundaryFields<dim> boundary(stress_space, state, face, fields);
+    PatchOutput<dim - 1, dim> output;
+    const auto                add_scalar = [&](const std::string &name) {
       output.names.push_back(name + label_of_field(scene, name));
     };
     const auto add_vector = [&](const std::string &field) {

@@ -75,8 +75,7 @@ namespace Viscoplastic
       const ContactLayout &face = d.face->layout();
       double               sum  = 0.;
       for (unsigned int p = 0; p < state.contact.n_points(); ++p)
-        if (face.points[p].gives_way())
-          sum += face.points[p].compliance.energy(state.contact.penetration(p));
+        sum += face.points[p].compliance.energy(state.contact.penetration(p));
       return face.sum(sum);
     }
   } // namespace

@@ -209,24 +209,36 @@ class Run:
         return json.loads((self.directory / "run.json").read_text())
 
 
-def run_program(arguments, ranks, work):
+def expect(process, code):
+    """A process that has to have ended with this code, unless it is None."""
+    if code is not None and process.returncode != code:
+        raise AssertionError(
+            f"{process.args} ended with code {process.returncode}:\n"
+            f"{process.stderr[-3000:]}"
+        )
+    return process
+
+
+def run_program(arguments, ranks, work, code=None):
     """The finished program as a subprocess.CompletedProcess; that of a server
-    where there is one, which takes no arguments with blanks."""
+    where there is one, which takes no arguments with blanks. `code': see
+    expect()."""
     if SERVER and not any(re.search(r"\s", str(word)) for word in arguments):
-        code = server(ranks).run(work, arguments)
+        ended_with = server(ranks).run(work, arguments)
         words = [
             (work / name).read_text(errors="replace") for name in ("stdout", "stderr")
         ]
-        return subprocess.CompletedProcess(arguments, code, *words)
-    return subprocess.run(
-        [*launcher(ranks), EXECUTABLE, *map(str, arguments)],
-        cwd=work,
-        env={**os.environ, "OMP_NUM_THREADS": "1"},
-        stdout=subprocess.PIPE,
-        stderr=subprocess.PIPE,
-        text=True,
-        errors="replace",
-    )
+        process = subprocess.CompletedProcess(arguments, ended_with, *words)
+    else:
+        process = subprocess.run(
+            [*launcher(ranks), EXECUTABLE, *map(str, arguments)],
+            cwd=work,
+            env={**os.environ, "OMP_NUM_THREADS": "1"},
+            capture_output=True,
+            text=True,
+            errors="replace",
+        )
+    return expect(process, code)
 
 
 def study_command(*arguments):
@@ -249,17 +261,17 @@ def study_environment():
     }
 
 
-def run_study(arguments, ranks, work):
+def run_study(arguments, ranks, work, code=None):
     """A study, effects or price as a subprocess.CompletedProcess."""
-    return subprocess.run(
+    process = subprocess.run(
         study_command(arguments[0], "-n", ranks, *arguments[1:]),
         cwd=work,
         env=study_environment(),
         stdin=subprocess.DEVNULL,
-        stdout=subprocess.PIPE,
-        stderr=subprocess.PIPE,
+        capture_output=True,
         text=True,
     )
+    return expect(process, code)
 
 
 def launcher(ranks):
@@ -312,11 +324,7 @@ def run(scene, overrides=None, ranks=1, text=None, check=True):
     if not keep:
         # results live as long as the Run
         weakref.finalize(result, shutil.rmtree, work, ignore_errors=True)
-    if check and process.returncode != 0:
-        raise AssertionError(
-            f"{scene} on {ranks} rank(s) ended with code "
-            f"{process.returncode}:\n{process.stderr[-3000:]}"
-        )
+    expect(process, 0 if check else None)
     return result
 
 

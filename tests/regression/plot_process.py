@@ -26,8 +26,7 @@ def plot_afresh(*arguments):
     """In a Python of its own, which has to find everything."""
     return subprocess.run(
         [sys.executable, PLOT, *map(str, arguments)],
-        stdout=subprocess.PIPE,
-        stderr=subprocess.PIPE,
+        capture_output=True,
         text=True,
     )
 

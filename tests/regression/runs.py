@@ -134,11 +134,11 @@ class Folder:
     def arguments(self, *arguments):
         return [*arguments, str(self.scene), str(self.variant)]
 
-    def run(self, *arguments, ranks=1):
-        """Of the scene, or study, effects and price."""
+    def run(self, *arguments, ranks=1, code=None):
+        """Of the scene, or study, effects and price; `code': see expect()."""
         is_study = arguments and arguments[0] in ("study", "effects", "price")
         call = run_study if is_study else run_program
-        return call(self.arguments(*arguments), ranks, self.work)
+        return call(self.arguments(*arguments), ranks, self.work, code)
 
     def rows(self):
         with open(self.study / "study.csv", newline="") as file:

@@ -3,7 +3,7 @@
 
 import numpy as np
 
-from harness import TestCase, lattice, main, run
+from harness import TestCase, as_prm, lattice, main, run
 
 
 def face_sizes(contact):
@@ -328,26 +328,18 @@ class Held(TestCase):
 class Reports(TestCase):
     """What is said at the end of a run whose mesh has changed."""
 
-    BLOCK = """
-        subsection Boundary 0
-          set Role = clamped
-        end
-        subsection Boundary 1
-          set Role     = traction
-          set Traction = 0.01*t; 0
-        end
-        subsection Boundary 2
-          set Role           = contact
-          set Friction law   = tresca
-          set Friction bound = 1e-9
-        end
-        subsection Boundary 3
-          set Role = free
-        end
-        subsection Output
-          set Fields every = 0
-        end
-        """
+    BLOCK = as_prm(
+        {
+            "Boundary 0/Role": "clamped",
+            "Boundary 1/Role": "traction",
+            "Boundary 1/Traction": "0.01*t; 0",
+            "Boundary 2/Role": "contact",
+            "Boundary 2/Friction law": "tresca",
+            "Boundary 2/Friction bound": "1e-9",
+            "Boundary 3/Role": "free",
+            "Output/Fields every": "0",
+        }
+    )
 
     def block(self, **overrides):
         return run("block", overrides, text=self.BLOCK)

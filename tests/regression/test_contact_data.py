@@ -9,7 +9,7 @@ every step, and displacements that differ by the motion.
 
 import numpy as np
 
-from harness import TestCase, main, run
+from harness import TestCase, as_prm, main, run
 
 SAME = (
     "stick_area",
@@ -548,29 +548,19 @@ class Held(TestCase):
     """A frictional piece whose nodes other conditions hold has no friction
     points: the run does without friction there, and says so."""
 
-    TEXT = """
-        subsection Boundary 0
-          set Role = clamped
-        end
-        subsection Boundary 1
-          set Role         = displacement
-          set Displacement = 0.01*t; FREE
-        end
-        subsection Boundary 2
-          set Role           = contact
-          set Friction law   = tresca
-          set Friction bound = 1e-3
-        end
-        subsection Boundary 3
-          set Role = free
-        end
-        subsection Time
-          set Phases = 1: 4
-        end
-        subsection Solver
-          set Contact tolerance = 1e-10
-        end
-        """
+    TEXT = as_prm(
+        {
+            "Boundary 0/Role": "clamped",
+            "Boundary 1/Role": "displacement",
+            "Boundary 1/Displacement": "0.01*t; FREE",
+            "Boundary 2/Role": "contact",
+            "Boundary 2/Friction law": "tresca",
+            "Boundary 2/Friction bound": "1e-3",
+            "Boundary 3/Role": "free",
+            "Time/Phases": "1: 4",
+            "Solver/Contact tolerance": "1e-10",
+        }
+    )
     NOTE = "Note: nothing slips or opens on boundary 2, "
     HELD = {"Geometry/Arguments": "1, 1 : 0, 0 : 1, 1 : true"}
     SPACE = {

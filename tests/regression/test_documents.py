@@ -382,8 +382,7 @@ class OwnScene(TestCase):
             [EXECUTABLE, *arguments],
             cwd=self.work,
             env={**os.environ, "OMP_NUM_THREADS": "1"},
-            stdout=subprocess.PIPE,
-            stderr=subprocess.PIPE,
+            capture_output=True,
             text=True,
         )
 

@@ -350,8 +350,7 @@ class Variants(TestCase):
 class Effects(TestCase):
     def test_of_the_slab(self):
         with Case(VERIFICATION / "slab.prm", **SLAB) as scene:
-            process = scene.run("effects")
-            self.assertEqual(process.returncode, 0, process.stderr)
+            process = scene.run("effects", code=0)
             verdicts = scene.verdicts()
             for effect in (
                 ("viscous flow", "elastic"),
@@ -499,8 +498,7 @@ class Effects(TestCase):
             self.assertRegex(
                 alone.stdout, r"friction has never acted: .* at most \d+\.\d+ % of"
             )
-            process = scene.run("effects")
-            self.assertEqual(process.returncode, 0, process.stderr)
+            scene.run("effects", code=0)
             verdicts = scene.verdicts()
             self.assertEqual(verdicts["viscous flow", "elastic"], "never acted")
             self.assertEqual(verdicts["slip on Boundary 2", "never"], "never acted")
@@ -513,8 +511,7 @@ class Effects(TestCase):
             Study__Budget=1e5,
             Error_control__Quantity="contact_force_y",
         ) as scene:
-            process = scene.run("effects")
-            self.assertEqual(process.returncode, 0, process.stderr)
+            scene.run("effects", code=0)
             (effect,) = [
                 effect
                 for effect in scene.about()["effects"]
@@ -538,8 +535,7 @@ class Effects(TestCase):
             Material__maxwell__Viscosity=0.01,
             Time__Scheme="backward Euler",
         ) as scene:
-            process = scene.run("effects")
-            self.assertEqual(process.returncode, 0, process.stderr)
+            scene.run("effects", code=0)
             about = scene.about()
             (failed,) = [
                 effect
@@ -587,8 +583,7 @@ class Effects(TestCase):
             Error_control__Tolerance=0.3,
             Study__Budget=1e5,
         ) as scene:
-            process = scene.run("effects")
-            self.assertEqual(process.returncode, 0, process.stderr)
+            scene.run("effects", code=0)
             verdicts = scene.verdicts()
             self.assertEqual(verdicts["friction on Boundary 2", "none"], "called for")
 
@@ -631,8 +626,7 @@ class Effects(TestCase):
         with Case(
             VERIFICATION / "slab.prm", **FEW_CELLS, Step_control__Tolerance=0.05
         ) as scene:
-            process = scene.run("effects")
-            self.assertEqual(process.returncode, 0, process.stderr)
+            scene.run("effects", code=0)
             verdicts = scene.verdicts()
             self.assertEqual(verdicts["friction on Boundary 2", "none"], "called for")
             self.assertIn(("step control", "the steps of the phases"), verdicts)
@@ -659,8 +653,7 @@ class Effects(TestCase):
             beam = Path(work) / "beam.prm"
             beam.write_text(as_prm(entries))
             with Case(beam, Study__Budget=1e5) as scene:
-                process = scene.run("effects")
-                self.assertEqual(process.returncode, 0, process.stderr)
+                scene.run("effects", code=0)
                 verdicts = scene.verdicts()
                 for effect in (
                     ("traction on Boundary 1", "none"),
@@ -678,8 +671,7 @@ class Effects(TestCase):
     def test_of_a_budget_that_ends(self):
         """A second is enough for the first run, not for all; two ranks."""
         with Case(VERIFICATION / "slab.prm", Study__Budget=1) as scene:
-            process = scene.run("effects", ranks=2)
-            self.assertEqual(process.returncode, 0, process.stderr)
+            process = scene.run("effects", ranks=2, code=0)
             about = scene.about()
             self.assertTrue(about["finished"])
             self.assertEqual(about["ranks"], 2)

@@ -83,30 +83,20 @@ class Same(TestCase):
                 )
 
     def test_shear_layer_in_3d(self):
-        boundaries = """
-            subsection Boundary 0
-              set Role = free
-            end
-            subsection Boundary 1
-              set Role = free
-            end
-            subsection Boundary 2
-              set Role           = contact
-              set Friction law   = tresca
-              set Friction bound = 0.02
-            end
-            subsection Boundary 3
-              set Role         = displacement
-              set Displacement = 0.1*t; -0.01*t; 0
-            end
-            subsection Boundary 4
-              set Role = free
-            end
-            subsection Boundary 5
-              set Role = free
-            end
-        """
-        text = "set Dimension = 3\n" + boundaries
+        text = as_prm(
+            {
+                "Dimension": "3",
+                "Boundary 0/Role": "free",
+                "Boundary 1/Role": "free",
+                "Boundary 2/Role": "contact",
+                "Boundary 2/Friction law": "tresca",
+                "Boundary 2/Friction bound": "0.02",
+                "Boundary 3/Role": "displacement",
+                "Boundary 3/Displacement": "0.1*t; -0.01*t; 0",
+                "Boundary 4/Role": "free",
+                "Boundary 5/Role": "free",
+            }
+        )
         short = {
             "Geometry/Arguments": "2, 1, 1 : 0, 0, 0 : 2, 1, 1 : true",
             "Geometry/Global refinements": 1,

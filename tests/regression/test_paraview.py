@@ -76,8 +76,7 @@ class Opens(TestCase):
         """The picture of the state that contrib/plot writes, and a .pvsm."""
         plot = subprocess.run(
             [sys.executable, SOURCE / "contrib" / "plot", result.directory, "--paraview"],
-            stdout=subprocess.PIPE,
-            stderr=subprocess.PIPE,
+            capture_output=True,
             text=True,
         )
         self.assertEqual(plot.returncode, 0, plot.stderr)

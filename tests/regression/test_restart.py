@@ -617,8 +617,8 @@ class Triggers(RestartCase):
             self.assertIdentical(job.results, reference.results)
 
 
-class Damaged(RestartCase):
-    """Checkpoints that are not what was written."""
+class OfSlab(RestartCase):
+    """What begins with the checkpoints of a run that has ended."""
 
     @classmethod
     def setUpClass(cls):
@@ -628,6 +628,10 @@ class Damaged(RestartCase):
     @classmethod
     def tearDownClass(cls):
         cls.reference.__exit__()
+
+
+class Damaged(OfSlab):
+    """Checkpoints that are not what was written."""
 
     def falls_back(self, damage):
         with Job("slab_adaptive", self.reference.overrides, self.reference) as job:
@@ -848,17 +852,8 @@ class Machine(RestartCase):
                 self.assertFalse((job.results / "statistics.csv").exists())
 
 
-class Changes(RestartCase):
+class Changes(OfSlab):
     """Other parameters after the restart."""
-
-    @classmethod
-    def setUpClass(cls):
-        cls.reference = Job("slab_adaptive", {**SLAB, **EVERY_STEP})
-        cls.reference.run()
-
-    @classmethod
-    def tearDownClass(cls):
-        cls.reference.__exit__()
 
     def restart(self, code, **overrides):
         with Job("slab_adaptive", self.reference.overrides, self.reference) as job:

@@ -353,8 +353,7 @@ class Page(Folder):
         process = subprocess.run(
             [sys.executable, SOURCE / "contrib" / "make_results", "--redraw"]
             + ["--results", self.folder / "results", "--page", file],
-            stdout=subprocess.PIPE,
-            stderr=subprocess.PIPE,
+            capture_output=True,
             text=True,
         )
         self.assertEqual((process.returncode, process.stderr), (0, ""))
@@ -370,8 +369,7 @@ class Page(Folder):
         """The program accepts the scene."""
         process = subprocess.run(
             [EXECUTABLE, "--check", *files, *set_options(overrides)],
-            stdout=subprocess.PIPE,
-            stderr=subprocess.PIPE,
+            capture_output=True,
             text=True,
             cwd=self.folder,
             env={**os.environ, "OMP_NUM_THREADS": "1"},
@@ -411,8 +409,7 @@ class Page(Folder):
         def make(*arguments):
             process = subprocess.run(
                 [sys.executable, SOURCE / "contrib" / "make_results", *arguments],
-                stdout=subprocess.PIPE,
-                stderr=subprocess.PIPE,
+                capture_output=True,
                 text=True,
             )
             self.assertNotEqual(process.returncode, 0)

@@ -47,8 +47,7 @@ class Site(TestCase):
         cls.site = Path(work.name).resolve() / "site"
         cls.process = subprocess.run(
             [SOURCE / "doc" / "site" / "build", cls.site],
-            stdout=subprocess.PIPE,
-            stderr=subprocess.PIPE,
+            capture_output=True,
             text=True,
         )
 

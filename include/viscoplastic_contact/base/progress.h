@@ -27,7 +27,8 @@ namespace Viscoplastic
       weighted_cells   = kept * weighted_cells + n_cells;
     }
 
-    /// What @p n_steps further ones will take on a mesh of @p n_cells.
+    /// The seconds that @p n_steps further steps are expected to take on a mesh
+    /// of @p n_cells cells.
     double
     seconds(const double n_steps, const double n_cells) const
     {
@@ -83,7 +84,7 @@ namespace Viscoplastic
 
 
 
-  /// What there is to say of a step.
+  /// What a line of progress says of a step, as far as a scene has it.
   struct StepProgress
   {
     unsigned int n;

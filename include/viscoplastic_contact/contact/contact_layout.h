@@ -44,6 +44,12 @@ namespace Viscoplastic
       {
         return is_obstacle && !compliance.is_rigid();
       }
+
+      bool
+      is_rigid_obstacle() const
+      {
+        return is_obstacle && compliance.is_rigid();
+      }
     };
 
     /// Position of each node's first component in face vectors, and the end.
@@ -214,6 +220,27 @@ namespace Viscoplastic
     {
       return slip[p][0] - bound[p];
     }
+
+    /// Whether a point slips against a force of friction.
+    bool
+    slips(const ContactLayout::Point &point, const unsigned int p) const
+    {
+      return !point.is_obstacle && !sticks[p] && bound[p] > 0.;
+    }
+
+    /// Whether a point takes the directions of its slip from its node: friction
+    /// that sticks, or a rigid obstacle that is touched.
+    bool
+    blocks(const ContactLayout::Point &point, const unsigned int p) const
+    {
+      return sticks[p] && !point.gives_way();
+    }
+
+    /// The multiplier of a point that does not block, which its slip s_c
+    /// determines: rho_c s_c/|s_c| or p(s_c - d_c); zero where nothing touches.
+    Tensor<1, 2>
+    multiplier_of_slip(const ContactLayout::Point &point,
+                       const unsigned int          p) const;
   };
 
 

@@ -27,8 +27,9 @@ namespace Viscoplastic
                        const unsigned int  n_tangents,
                        const double        bound);
 
-  /// The same for point @p p, friction or obstacle, of a node that moves by
-  /// @p start and @p flexibility times the forces of its points and @p force.
+  /// The multiplier of point @p p, friction or obstacle, and whether it sticks
+  /// or touches: its node moves by @p start + @p flexibility (@p force - map^T
+  /// multiplier).
   PointSolution
   solve_point(const ContactLayout &face,
               unsigned int         p,

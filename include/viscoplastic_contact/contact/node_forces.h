@@ -95,9 +95,9 @@ namespace Viscoplastic
     bool
     takes_part(const unsigned int p) const
     {
-      if (!face.points[p].is_obstacle)
-        return state.sticks[p] || (law != nullptr && !slips(p));
-      return state.sticks[p] && !face.points[p].gives_way();
+      const ContactLayout::Point &point = face.points[p];
+      return state.blocks(point, p) ||
+             (law != nullptr && !point.is_obstacle && !slips(p));
     }
 
     /// Whether an obstacle presses by how far the node is in it.

@@ -32,9 +32,9 @@ namespace Viscoplastic
   };
 
 
-  /// Choose and set up a solver for this system and, beyond what that says by
-  /// itself, for the @p demand. Throws ExcMessage for a choice that cannot be
-  /// had. Collective.
+  /// Choose and set up a solver for the matrix of @p system. Of @p demand only
+  /// what the system itself does not tell counts (choice, expected number of
+  /// solves). Throws ExcMessage for a choice that cannot be had. Collective.
   std::unique_ptr<BulkSolver>
   make_bulk_solver(const BulkSystem &system, SolverDemand demand);
 } // namespace Viscoplastic

@@ -40,15 +40,15 @@ namespace Viscoplastic
     virtual void
     vmult(DistributedVector &y, const DistributedVector &x) const = 0;
 
-    /// The same without truncation and springs; y means nothing on excluded
-    /// components.
+    /// y := M^{-1} x for the matrix without truncation and springs; y means
+    /// nothing on excluded components.
     virtual void
     vmult_untruncated(DistributedVector       &y,
                       const DistributedVector &x) const = 0;
 
-    /// The same with a preconditioner that has never known a truncation: it is
-    /// made at the first call, which is worth iterations_for_whole() iterations
-    /// with the other one.
+    /// As vmult_untruncated(), with a preconditioner that was set up for the
+    /// whole matrix: it is made at the first call, which costs as much as
+    /// iterations_for_whole() iterations with the truncated one.
     virtual void
     vmult_whole(DistributedVector &y, const DistributedVector &x) const
     {

@@ -23,7 +23,8 @@ namespace Viscoplastic
   to_string(const BulkSolverKind kind);
 
 
-  /// What decides on the solver of a system.
+  /// The sizes and properties of a system from which choose_bulk_solver()
+  /// selects a direct or an iterative solver.
   struct SolverDemand
   {
     LinearSolver choice = LinearSolver::automatic;

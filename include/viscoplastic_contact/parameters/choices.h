@@ -304,7 +304,7 @@ namespace Viscoplastic
 
 
 
-  /// What a value is called in parameter files.
+  /// The name of a value of an enumeration in parameter files.
   template <typename Choice>
   std::string
   name_of(const Choice choice)

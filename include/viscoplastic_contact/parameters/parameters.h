@@ -53,10 +53,12 @@ namespace Viscoplastic
     std::string poissons_ratio = "0.3";
     std::string voigt_matrix;
     std::string law = "elastic";
-    /// alpha; empty for a material that does not expand.
+    /// The coefficient alpha of thermal expansion, per kelvin; empty for a
+    /// material that does not expand.
     std::string thermal_expansion;
-    /// Q, and the temperature at which the law is as its entries say; empty for
-    /// a law that does not know of temperature.
+    /// The activation energy Q per mole, and the temperature at which the rate
+    /// of the law is that of its entries; empty where rates do not depend on
+    /// temperature.
     std::string activation_energy, law_temperature;
     /// Times; empty for a material that is there from the beginning, or to the
     /// end.

@@ -38,6 +38,10 @@ namespace Viscoplastic
     BodyFields &
     operator=(const BodyFields &) = delete;
 
+    /// The fields that the output of a scene has, but for the nodal ones.
+    static std::set<RecordedField>
+    of_output(const Scene<dim> &scene);
+
     /// What the values are called: displacement_x, ..., creep_rate, ...
     static std::vector<std::string>
     names(const std::set<RecordedField> &fields);

@@ -27,6 +27,11 @@ namespace Viscoplastic
                    const ContactFace<dim>        *face,
                    const std::set<RecordedField> &fields);
 
+    /// The fields of Gamma_3 that the output of a scene has, but for the
+    /// displacement. @p face: as above.
+    static std::set<RecordedField>
+    of_output(const Scene<dim> &scene, const ContactFace<dim> *face);
+
     /// What a field is called in the outputs, and whether it is a vector.
     static std::string
     name(const RecordedField field);

@@ -71,7 +71,8 @@ namespace Viscoplastic
            const AcceptedStep<dim>   &step,
            const SolutionErrors      &errors);
 
-    /// Record a change of the mesh.
+    /// Take into the energy balance what a change of the mesh between two steps
+    /// changes in the energies of the state.
     void
     record_mesh_change(const EnergiesOnMesh &before,
                        const EnergiesOnMesh &after)

@@ -64,8 +64,8 @@ namespace Viscoplastic
 
 
 
-  /// Measure a step that leads from @p old, but for points and integrals.
-  /// Collective.
+  /// The quantities of a step that leads from the state @p old, without the
+  /// values at points and the integrals that a scene asks for. Collective.
   template <int dim>
   StepQuantities<dim>
   measure_step(const Discretization<dim> &discretization,

@@ -42,8 +42,9 @@ namespace Viscoplastic
   public:
     PlaceNames() = default;
 
-    /// Throws ExcMessage with a sentence for the user, as find() and column()
-    /// do.
+    /// Take the names from the entries of a scene. Throws ExcMessage for one
+    /// that is no name or that two places have; find() and column() for one
+    /// that no place has.
     explicit PlaceNames(const Parameters &parameters);
 
     bool

@@ -78,7 +78,8 @@ namespace Viscoplastic
       return has_changing_materials;
     }
 
-    /// Whether faces in contact, on either side, come or go with them.
+    /// Whether faces of a contact boundary, or of the body opposite, come or go
+    /// with the materials of a stage.
     bool
     contact_changes_with_stages() const
     {

@@ -81,7 +81,7 @@ namespace Viscoplastic
 
 
 
-  /// How a step went.
+  /// What a step method reports of a step beside its end state.
   struct StepOutcome
   {
     ContactReport report;

@@ -18,6 +18,7 @@ namespace Viscoplastic
     Vector<double>         w(face.n_dofs());
     unsigned int           iterations = 0;
     solve.set_truncation(truncation, is_kept);
+    // Where these are not enough, the line search takes what they have come to.
     for (unsigned int n = 0; n < max_corrections; ++n)
       {
         iterations += solve.correct(force, reduction, w);

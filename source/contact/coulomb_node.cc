@@ -98,8 +98,14 @@ namespace Viscoplastic
       node.present > 0. && excess(node.present) > 0. ? node.present : 0.;
     if (may_open && low == 0.)
       return 0.;
-    double high = std::max(
-      {2. * low, stuck, stopping_force(node.compliance, W_nn, q_n), 1e-300});
+    // Without any motion beyond the foundation what is given of friction
+    // presses. The flexibility is positive definite: the excess falls without
+    // bound. What is no number ends the search, and is met in residuals.
+    double high = std::max({2. * low,
+                            stuck,
+                            stopping_force(node.compliance, W_nn, q_n),
+                            node.given,
+                            1e-300});
     for (unsigned int i = 0; i < 1000 && excess(high) > 0.; ++i)
       {
         low = high;

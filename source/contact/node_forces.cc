@@ -15,8 +15,9 @@ namespace Viscoplastic
     /// Directions that are held by less than this part of others are not.
     constexpr double least_hold = 1e-12;
     /// Where a node can move in what gives way, pressures hold what they can
-    /// before friction of another piece does: they count that much more.
-    constexpr double preference_of_pressures = 1e8;
+    /// before friction of another piece does: they count that much more. What
+    /// friction alone holds is known to rounding times that.
+    constexpr double preference_of_pressures = 1e4;
     /// Friction this near to its bound stays at it.
     constexpr double at_limit = 1e-8;
 

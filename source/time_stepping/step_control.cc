@@ -378,7 +378,7 @@ namespace Viscoplastic
         ++n.events;
         present.was_rejected = true;
         present.event_before = step.t;
-        present.wanted       = std::max(0.5 * event_gap, 0.5 * step.k);
+        present.wanted       = std::max(smallest(step.t_old), 0.5 * step.k);
         return false;
       }
 
@@ -431,7 +431,9 @@ namespace Viscoplastic
       factor == 1. ? step.k :
                      chosen_step_size(factor * step.k, schedule.end_time());
     present.wanted =
-      std::min(std::max(next, factor >= 1. ? uncut : 0.), largest(step.t_old));
+      std::min(std::max(
+                 {next, factor >= 1. ? uncut : 0., smallest(step.t_old)}),
+               largest(step.t_old));
     present.was_rejected = false;
     if (schedule.phase_ending_at(step.t) > 0)
       {

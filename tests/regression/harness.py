@@ -124,10 +124,13 @@ class Fields:
                 raise AssertionError("more than one cell type in a VTU file")
             cells += [block.data + offset for block in piece.cells]
             offset += len(piece.points)
-        self.points = np.concatenate(points).astype(float)
-        self.cells = np.concatenate(cells) if cells else np.zeros((0, 2), int)
         self.point_data, self.cell_data = {}, {}
-        for label in pieces[0].point_data if pieces else []:
+        if not pieces:  # no face of a contact is there at this time
+            self.points, self.cells = np.empty((0, 3)), np.empty((0, 0), int)
+            return
+        self.points = np.concatenate(points).astype(float)
+        self.cells = np.concatenate(cells)
+        for label in pieces[0].point_data:
             values = np.concatenate([p.point_data[label] for p in pieces])
             values = values.astype(float)
             name = without_unit(label)

@@ -172,11 +172,10 @@ class Rotated(TestCase):
         straight = edge("; ".join(path))
         self.assertGreater(straight["stick_area"][-1], 0.5)
         self.assertGreater(straight["slip_area"][-1], 0.5)
-        # In the first two steps nodes of the edge slip hardly, and 14 to 29 are
-        # taken, by the rounding of the processor. Then 7, 7, 7, 6; with the pressures
-        # of springs shared as if they held the node, 10 to 11 each.
-        self.assertLess(straight["contact_iterations"][1:3].sum(), 35)
-        self.assertLess(straight["contact_iterations"][3:].sum(), 35)
+        # 6, 7, 7, 7, 7, 6 whatever the processor; 14 to 22 where rounding of shared
+        # forces stalls them, and with the pressures of springs shared as if they held
+        # the node 10 to 11 each.
+        self.assertLess(straight["contact_iterations"].max(), 10)
         turned = edge(
             expressions(matrix, path),
             3,

@@ -102,6 +102,15 @@ TEST(CoulombNode, ObeysTheLaw)
       const CoulombNode node = random_node(random, 1 + seed % 2, compliance);
       const double      p    = coulomb_pressure(node);
       EXPECT_LT(violation(node, p), 1e-11 * (1. + p)) << "seed " << seed;
+      if (!compliance.is_rigid())
+        continue;
+      // In another unit of force.
+      constexpr double unit = 1ull << 40;
+      CoulombNode      other(node);
+      other.flexibility /= unit;
+      other.given *= unit;
+      EXPECT_NEAR(coulomb_pressure(other) / unit, p, 1e-12 * p)
+        << "seed " << seed;
     }
 }
 

@@ -400,6 +400,15 @@ namespace
       control.set_has_estimate(false);
       EXPECT_NEAR(largest(steps(control, 1., no_error)), 0.1, 1e-12);
     }
+    {
+      // Errors that are always too large ask for no shorter ones in vain.
+      parameters.smallest_step = 0.01;
+      StepControl control(parameters, StiffnessPolicy::refuse, schedule, 1, 0.);
+      const auto  too_large = [](const TimeStep &step) {
+        return StepErrors{1., step.k, 1.};
+      };
+      EXPECT_LE(steps(control, 1., too_large).size(), 102u);
+    }
     parameters.largest_step = 0.02;
     StepControl control(parameters, StiffnessPolicy::refuse, schedule, 1, 0.);
     EXPECT_LE(largest(steps(control, 1., no_error)), 0.02 * (1. + 1e-12));

@@ -21,6 +21,17 @@ namespace Viscoplastic
 
 
 
+    /// z beside that of the temperature.
+    template <int dim>
+    bool
+    has_other_stress(const Scene<dim> &scene)
+    {
+      return scene.has_viscosity() || scene.initial_displacement ||
+             scene.initial_stress || scene.has_stages();
+    }
+
+
+
     template <int dim>
     void
     require_absolute(const Material<dim> &material,
@@ -46,6 +57,7 @@ namespace Viscoplastic
     : expands(any_expands(stress_space.space.scene))
     , varies_in_time(
         stress_space.space.scene.temperature->value.depends_on_time())
+    , is_alone(!has_other_stress(stress_space.space.scene))
     , stress_space(stress_space)
   {
     if (!expands)
@@ -166,6 +178,8 @@ namespace Viscoplastic
   {
     if (thermal == nullptr || !thermal->expands)
       return z;
+    if (thermal->is_alone)
+      return rest; // without what rounding leaves of z
     rest = z;
     thermal->add_stress(t, -1., rest);
     return rest;

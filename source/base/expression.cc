@@ -8,29 +8,12 @@
 #include <viscoplastic_contact/base/types.h>
 
 #include <cmath>
-#include <iostream>
 #include <sstream>
 
 namespace Viscoplastic
 {
   namespace
   {
-    /// What muParser says in the lines that deal.II prints, `Message:  <...>'
-    /// and others; empty if there is no such line.
-    std::string
-    message_of_parser(const std::string &printed)
-    {
-      const std::size_t begin = printed.find("Message:");
-      const std::size_t open  = printed.find('<', begin);
-      const std::size_t close = printed.rfind('>', printed.find('\n', begin));
-      if (begin == std::string::npos || open == std::string::npos ||
-          close == std::string::npos || close < open)
-        return "";
-      return printed.substr(open + 1, close - open - 1);
-    }
-
-
-
     /// muParser's words with the full stop that most of them lack.
     std::string
     as_sentence(const std::string &words)
@@ -111,12 +94,11 @@ namespace Viscoplastic
 
   namespace
   {
-    /// Null if @p parser knows no tables.
     template <int dim>
-    const ParserWithTables<dim> *
+    const ParserWithTables<dim> &
     with_tables(const std::unique_ptr<FunctionParser<dim>> &parser)
     {
-      return dynamic_cast<const ParserWithTables<dim> *>(parser.get());
+      return static_cast<const ParserWithTables<dim> &>(*parser);
     }
   } // namespace
 
@@ -132,33 +114,20 @@ namespace Viscoplastic
                 ExpressionError("The expression of '" + entry + "' is empty.",
                                 entry));
     refuse_slips(text, entry);
-    const auto                           columns = columns_in(text);
-    std::unique_ptr<FunctionParser<dim>> parser;
-    if (columns.empty() &&
-        Utilities::split_string_list(variables).size() == dim + 1)
-      parser = std::make_unique<FunctionParser<dim>>(1);
-    else
-      parser = std::make_unique<ParserWithTables<dim>>(columns);
-    // deal.II prints what muParser says to std::cerr; the user gets it in our
-    // sentence instead.
-    std::ostringstream printed;
-    std::streambuf    *original = std::cerr.rdbuf(printed.rdbuf());
+    std::unique_ptr<FunctionParser<dim>> parser =
+      std::make_unique<ParserWithTables<dim>>(columns_in(text));
     try
       {
         parser->initialize(variables,
                            text,
                            {{"pi", numbers::PI}, {"Pi", numbers::PI}},
                            /* time_dependent = */ true);
-        parser->value(Point<dim>()); // deal.II parses at the first value
-        std::cerr.rdbuf(original);
+        parser->value(Point<dim>()); // muParser parses at the first value
       }
-    catch (...) // muParser's are no std::exception
+    catch (const std::exception &)
       {
-        std::cerr.rdbuf(original);
-        std::string why = message_of_parser(printed.str());
-        if (why.empty())
-          why = reason_of_current_exception();
-        const std::string name = unknown_name(why, variables);
+        const std::string why  = reason_of_current_exception(),
+                          name = unknown_name(why, variables);
         AssertThrow(
           false,
           ExpressionError("The expression '" + excerpt(Utilities::trim(text)) +
@@ -258,7 +227,7 @@ namespace Viscoplastic
       {
         parser->set_time(t);
         if (has_additional_variable)
-          with_tables<dim>(parser)->set_additional_variable(additional);
+          with_tables<dim>(parser).set_additional_variable(additional);
         result = parser->value(x);
       }
     require_finite(result, x, t);
@@ -275,7 +244,8 @@ namespace Viscoplastic
   {
     if (!std::isfinite(result))
       {
-        const auto *tables = with_tables<dim>(parser);
+        const std::string gap =
+          parser ? with_tables<dim>(parser).last_gap() : "";
         // The components of x, which other variables may follow.
         auto names = Utilities::split_string_list(variables);
         names.resize(dim);
@@ -289,9 +259,7 @@ namespace Viscoplastic
                       "x" :
                       position)
                 << " = (" << x << "), t = " << t
-                << (tables && !tables->last_gap().empty() ?
-                      ": " + tables->last_gap() + "." :
-                      "; it must be finite.");
+                << (gap.empty() ? "; it must be finite." : ": " + gap + ".");
         AssertThrow(false, ExcMessage(message.str()));
       }
   }
@@ -304,9 +272,8 @@ namespace Viscoplastic
   {
     if (!parser || !time_dependent)
       return false;
-    const auto *tables = with_tables<dim>(parser);
-    bool        result = text.find_first_of("<>=!?") != std::string::npos ||
-                  (tables && tables->may_jump());
+    bool result = text.find_first_of("<>=!?") != std::string::npos ||
+                  with_tables<dim>(parser).may_jump();
     for (const char *function : {"if", "int", "ceil", "floor", "rint", "sign"})
       result = result || mentions(text, function);
     return result;
@@ -334,7 +301,7 @@ namespace Viscoplastic
   {
     if (!parser || !time_dependent)
       return false;
-    bool result = may_jump() || with_tables<dim>(parser);
+    bool result = may_jump() || with_tables<dim>(parser).has_tables();
     for (const char *function :
          {"abs", "min", "max", "fmod", "asin", "acos", "sqrt"})
       result = result || mentions(text, function);

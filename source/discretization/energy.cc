@@ -40,9 +40,10 @@ namespace Viscoplastic
       return result;
     result.mean_stress += stress_space.mean(c, &state.z[c * n]);
     // A source flows also where there is no law.
-    const bool flows   = law || laws.source_solution;
-    const bool is_warm = laws.thermal && laws.thermal->expands;
-    if (flows || is_warm)
+    const bool flows = law || laws.source_solution;
+    const bool is_heated =
+      laws.thermal && laws.thermal->expands && laws.thermal->varies_in_time;
+    if (flows || is_heated)
       stress_space.strains(c, old_state.u.begin(), old_strain.data());
     for (unsigned int s = 0; s < n; ++s)
       {
@@ -50,26 +51,27 @@ namespace Viscoplastic
         const double                 weight = stress_space.weight(c, s);
         result.irreversible_energy +=
           0.5 * weight * stiffness.complementary_square(z);
-        if (!flows && !is_warm)
+        if (!flows && !is_heated)
           continue;
         const SymmetricTensor<2, 3> &old_z = old_state.z[c * n + s];
-        const SymmetricTensor<2, 3>  mean_strain =
+        const double                 growth =
+          is_heated ? now.thermal_strain(c, s) - before.thermal_strain(c, s) :
+                                      0.;
+        if (growth != 0.)
+          result.thermal_work -=
+            0.5 * weight * growth *
+            trace(stiffness.stress(old_strain[s] + strain[s]) + old_z + z);
+        if (!flows)
+          continue;
+        const SymmetricTensor<2, 3> mean_strain =
                                       0.5 * (old_strain[s] + strain[s]),
                                     mean_z = 0.5 * (old_z + z);
         // E^-1 sigma, of the mean stress of the step.
         SymmetricTensor<2, 3> driving_strain =
           mean_strain + stiffness.strain(mean_z);
         SymmetricTensor<2, 3> flow = z - old_z;
-        if (is_warm)
-          {
-            const double growth =
-              now.thermal_strain(c, s) - before.thermal_strain(c, s);
-            result.thermal_work -=
-              weight * growth * trace(stiffness.stress(mean_strain) + mean_z);
-            flow -= ThermalStrain<dim>::stress(stiffness, growth);
-            if (!flows)
-              continue;
-          }
+        if (growth != 0.)
+          flow -= ThermalStrain<dim>::stress(stiffness, growth);
         // Parameters may be expressions: only for laws that use them.
         if (law && law->has_own_energy())
           {

@@ -21,6 +21,17 @@ namespace Viscoplastic
 
 
 
+    /// z beside that of the temperature.
+    template <int dim>
+    bool
+    has_other_stress(const Scene<dim> &scene)
+    {
+      return scene.has_viscosity() || scene.initial_displacement ||
+             scene.initial_stress || scene.has_stages();
+    }
+
+
+
     template <int dim>
     void
     require_absolute(const Material<dim> &material,
@@ -46,6 +57,7 @@ namespace Viscoplastic
     : expands(any_expands(stress_space.space.scene))
     , varies_in_time(
         stress_space.space.scene.temperature->value.depends_on_time())
+    , is_alone(!has_other_stress(stress_space.space.scene))
     , stress_space(stress_space)
   {
     if (!expands)
@@ -82,6 +94,7 @@ namespace Viscoplastic
     auto                   result = std::make_shared<Samples>();
     std::vector<double>   &values = result->temperature;
     result->t                     = t;
+    values.reserve(size);
     fail_together(stress_space.space.communicator, [&] {
       if (!T.depends_on_position())
         values.assign(size, T.value(Point<dim>(), t));
@@ -100,8 +113,12 @@ namespace Viscoplastic
                              t);
     });
     if (!reference.empty())
-      for (std::size_t i = 0; i < size; ++i)
-        result->strain.push_back(expansion[i / n] * (values[i] - reference[i]));
+      {
+        result->strain.resize(size);
+        for (std::size_t c = 0, i = 0; c < expansion.size(); ++c)
+          for (unsigned int s = 0; s < n; ++s, ++i)
+            result->strain[i] = expansion[c] * (values[i] - reference[i]);
+      }
     std::swap(last[0], last[1]);
     last[0] = result;
     return result;
@@ -149,10 +166,11 @@ namespace Viscoplastic
       return;
     const auto         before = at(t_old), now = at(t);
     const unsigned int n = stress_space.n_samples;
-    for (std::size_t i = 0; i < z.size(); ++i)
-      if (const double change = now->strain[i] - before->strain[i];
-          change != 0.)
-        z[i] += stress(stress_space.moduli(i / n), change);
+    for (std::size_t c = 0, i = 0; c < expansion.size(); ++c)
+      for (unsigned int s = 0; s < n; ++s, ++i)
+        if (const double change = now->strain[i] - before->strain[i];
+            change != 0.)
+          z[i] += stress(stress_space.moduli(c), change);
   }
 
 
@@ -166,6 +184,8 @@ namespace Viscoplastic
   {
     if (thermal == nullptr || !thermal->expands)
       return z;
+    if (thermal->is_alone)
+      return rest; // without what rounding leaves of z
     rest = z;
     thermal->add_stress(t, -1., rest);
     return rest;

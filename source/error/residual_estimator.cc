@@ -8,19 +8,6 @@ namespace Viscoplastic
 {
   namespace
   {
-    template <int dim>
-    Tensor<1, dim>
-    in_plane(const SymmetricTensor<2, 3> &stress, const Tensor<1, dim> &normal)
-    {
-      Tensor<1, dim> traction;
-      for (unsigned int i = 0; i < dim; ++i)
-        for (unsigned int j = 0; j < dim; ++j)
-          traction[i] += stress[i][j] * normal[j];
-      return traction;
-    }
-
-
-
     /// What the data contradict in @p traction = sigma nu: zero in the
     /// directions in which u is prescribed.
     template <int dim>
@@ -343,7 +330,7 @@ namespace Viscoplastic
     if (fields.t && !initial_tractions.empty())
       for (std::size_t i = 0; i < tractions.size(); ++i)
         tractions[i] += initial_tractions[i];
-    if (fields.t && !expansion.empty())
+    if (fields.t && stress_space.space.scene.has_thermal_strain())
       add_thermal_tractions(*fields.t, tractions);
 
     // Normals point out of both sides.

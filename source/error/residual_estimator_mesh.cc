@@ -32,7 +32,7 @@ namespace Viscoplastic
     make_faces();
     make_face_values();
     make_initial_stress();
-    make_expansion();
+    make_thermal_points();
     if (!stress_space.space.mortar_rows.empty())
       {
         find_other_bodies();
@@ -386,11 +386,7 @@ namespace Viscoplastic
         {
           const SymmetricTensor<2, 3> rest =
             at(c, face.positions[q]) - means[c];
-          Tensor<1, dim> traction;
-          for (unsigned int i = 0; i < dim; ++i)
-            for (unsigned int j = 0; j < dim; ++j)
-              traction[i] += rest[i][j] * face.normals[q][j];
-          initial_tractions.push_back(traction);
+          initial_tractions.push_back(in_plane(rest, face.normals[q]));
         }
     });
   }
@@ -413,29 +409,47 @@ namespace Viscoplastic
 
   template <int dim>
   void
-  ResidualEstimator<dim>::make_expansion()
+  ResidualEstimator<dim>::make_thermal_points()
   {
     const Scene<dim> &scene = stress_space.space.scene;
-    if (!scene.has_thermal_strain())
+    if (!scene.has_thermal_strain() || stress_space.mean_dilatation)
       return;
     fail_together(stress_space.space.communicator, [&] {
+      std::vector<SymmetricTensor<2, 3>> of_degree;
       for (const LocalCell &cell : cells)
         {
           Tensor<1, dim> center = cell.origin;
           for (const auto &position : shapes[cell.shape].positions)
             center += position / n_points;
-          expansion.push_back(
-            scene.material(cell.material_id).expansion(Point<dim>(center)));
+          of_degree.push_back(ThermalStrain<dim>::stress(
+            cell.stiffness,
+            scene.material(cell.material_id).expansion(Point<dim>(center))));
         }
-      const Temperature<dim> &T = *scene.temperature;
+      std::vector<bool> counts(cells.size() * n_faces + subface_sides.size());
+      for (const BoundaryFace &face : boundary_faces)
+        counts[face.cell * n_faces + face.face] = true;
+      for (const InteriorFace &face : interior_faces)
+        {
+          const auto [a, b] = face.cells;
+          if (of_degree[a] != of_degree[b] ||
+              cells[a].is_present != cells[b].is_present)
+            for (const unsigned int traction : face.tractions)
+              counts[traction / n_face_points] = true;
+        }
+      const Temperature<dim> &T    = *scene.temperature;
+      std::size_t             side = 0;
       for_each_face([&](const std::size_t c, const FaceShape &face) {
-        for (unsigned int q = 0; q < n_face_points; ++q)
-          reference_temperature.push_back(
-            T.reference ?
-              *T.reference :
-            expansion[c] == 0. ?
-              0. :
-              T.value.value(cells[c].origin + face.positions[q], 0.));
+        if (counts[side] && of_degree[c].norm() > 0.)
+          for (unsigned int q = 0; q < n_face_points; ++q)
+            {
+              const Point<dim> x = cells[c].origin + face.positions[q];
+              thermal_points.push_back(
+                {side * n_face_points + q,
+                 x,
+                 T.reference ? *T.reference : T.value.value(x, 0.),
+                 in_plane(of_degree[c], face.normals[q])});
+            }
+        ++side;
       });
     });
   }
@@ -448,38 +462,20 @@ namespace Viscoplastic
     const double                 t,
     std::vector<Tensor<1, dim>> &tractions) const
   {
-    const Expression<dim> &T      = stress_space.space.scene.temperature->value;
-    const bool             varies = T.depends_on_time();
-    if (varies || thermal_tractions.empty())
+    const Expression<dim> &T = stress_space.space.scene.temperature->value;
+    if (T.depends_on_time() || !temperatures)
       {
-        const double same_everywhere =
-          T.depends_on_position() ? 0. : T.value(Point<dim>(), t);
-        thermal_tractions.assign(tractions.size(), Tensor<1, dim>());
-        std::size_t i = 0;
+        temperatures.emplace();
         // A temperature without a value there, on some rank.
         fail_together(stress_space.space.communicator, [&] {
-          for_each_face([&](const std::size_t c, const FaceShape &face) {
-            for (unsigned int q = 0; q < n_face_points; ++q, ++i)
-              if (expansion[c] != 0.)
-                {
-                  const double here =
-                    T.depends_on_position() ?
-                      T.value(cells[c].origin + face.positions[q], t) :
-                      same_everywhere;
-                  const SymmetricTensor<2, 3> stress =
-                    ThermalStrain<dim>::stress(
-                      cells[c].stiffness,
-                      expansion[c] * (here - reference_temperature[i]));
-                  for (unsigned int k = 0; k < dim; ++k)
-                    for (unsigned int l = 0; l < dim; ++l)
-                      thermal_tractions[i][k] +=
-                        stress[k][l] * face.normals[q][l];
-                }
-          });
+          for (const ThermalPoint &point : thermal_points)
+            temperatures->push_back(T.value(point.x, t));
         });
       }
-    for (std::size_t i = 0; i < tractions.size(); ++i)
-      tractions[i] += thermal_tractions[i];
+    for (std::size_t i = 0; i < thermal_points.size(); ++i)
+      tractions[thermal_points[i].traction] +=
+        ((*temperatures)[i] - thermal_points[i].reference) *
+        thermal_points[i].of_degree;
   }
 
 

@@ -51,10 +51,11 @@ namespace Viscoplastic
                     const State<dim>          &state,
                     const Forces<dim>         &forces)
         : state(state)
-        , z(without_thermal_stress(d.laws.thermal.get(),
-                                   state.t,
-                                   state.z,
-                                   rest))
+        , z(d.mean_dilatation ? state.z :
+                                without_thermal_stress(d.laws.thermal.get(),
+                                                       state.t,
+                                                       state.z,
+                                                       rest))
       {
         if (d.face)
           density = d.face->density(state.contact);

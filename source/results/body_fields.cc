@@ -250,8 +250,8 @@ namespace Viscoplastic
             result.push_back(von_mises(stress));
             break;
           case RecordedField::irreversible_stress:
-            append<dim>(state.z.empty() ?
-                          z :
+            append<dim>(irreversible.empty() ?
+                          SymmetricTensor<2, 3>() :
                           stress_space.mean(
                             cell, &irreversible[cell * stress_space.n_samples]),
                         result);

@@ -370,7 +370,8 @@ class Contact(TestCase):
         self.assertLess(ball["force_balance_defect"].max(), 1e-9)
 
     def test_indenters(self):
-        """Punch, cone and a pressure on a circle (Sneddon, Boussinesq)."""
+        """Punch, ball, cone and a pressure on a circle, of one force and radius, on
+        which what is given far away depends (Sneddon, Hertz, Boussinesq)."""
 
         def indent(refinements, ids="x < 1", **more):
             return run(
@@ -397,7 +398,33 @@ class Contact(TestCase):
         # measured: 0.03 to 0.045; the node at the edge carries more
         self.assertClose(pressure[inner], known, relative=0.05)
 
-        # of the same force and radius, and twice as deep
+        balls = [
+            indent(n, "x < 2", Gap="0.0075*x^2", Foundation_displacement="-0.015*t")
+            for n in (1, 2, 3)
+        ]
+        r = np.linspace(0, 2, 2001)
+        known = 0.03 * modulus / np.pi * np.sqrt(np.maximum(1 - r**2, 0))
+        errors = []
+        for ball in balls:
+            face = ball.fields("contact")
+            order = np.argsort(face.points[:, 0])
+            pressure = np.interp(
+                r, face.points[order, 0], face.point_data["contact_pressure"][order]
+            )
+            errors.append(
+                (
+                    -ball["contact_force_y"][-1] / (0.02 * modulus) - 1,
+                    np.sqrt((r * (pressure - known) ** 2).sum() / (r * known**2).sum()),
+                    np.sqrt(ball["contact_area"][-1] / np.pi) - 1,
+                )
+            )
+        # measured: 0.035, 0.010, 0.0028; 0.21, 0.10, 0.048; 0.32, 0.16, 0.079, a cell
+        for rate in np.log2(np.divide(errors[:-1], errors[1:])):
+            self.assertClose(rate[0], 1.85, absolute=0.1, what="force")
+            self.assertClose(rate[1:], 1.05, absolute=0.15, what="pressure, radius")
+        self.assertLess(errors[-1][0], 0.003)
+
+        # twice as deep as the punch
         cone = indent(
             3, "x < 2", Gap="0.04/pi*x", Foundation_displacement="-0.02*t"
         )

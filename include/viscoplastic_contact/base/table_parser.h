@@ -19,10 +19,11 @@ namespace Viscoplastic
 {
   using namespace dealii;
 
-  /// deal.II's parser with columns of tables as functions, which deal.II keeps
-  /// muParser from: its variables, constants and functions are those of
-  /// FunctionParser. Between the coordinates and time there may be one more
-  /// variable.
+  /// muParser with the variables, constants and functions of deal.II's
+  /// FunctionParser, and with columns of tables as functions, which that keeps
+  /// muParser from. Between the coordinates and time there may be one more
+  /// variable. A value costs half of what deal.II's does, which looks for the
+  /// parser of the thread; this one must not be shared by threads.
   template <int dim>
   class ParserWithTables : public FunctionParser<dim>
   {
@@ -109,6 +110,12 @@ namespace Viscoplastic
     set_additional_variable(const double value) const
     {
       variables[dim] = value;
+    }
+
+    bool
+    has_tables() const
+    {
+      return !calls.empty();
     }
 
     bool

@@ -42,6 +42,8 @@ namespace Viscoplastic
     const bool expands;
     /// Whether thermal strains and rates may change from step to step.
     const bool varies_in_time;
+    /// Whether z is nothing but the thermal stress.
+    const bool is_alone;
 
     /// Whether the temperature is another one somewhere. Collective.
     bool
@@ -76,8 +78,8 @@ namespace Viscoplastic
 
 
   /// What z is without the thermal stress of time t, kept in @p rest unless z
-  /// is that itself. @p thermal: null in scenes without temperature.
-  /// Collective.
+  /// is that itself; empty if it is nothing else. @p thermal: null in scenes
+  /// without temperature. Collective.
   template <int dim>
   const IrreversibleStress &
   without_thermal_stress(const ThermalStrain<dim> *thermal,

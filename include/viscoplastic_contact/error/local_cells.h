@@ -11,6 +11,20 @@
 
 namespace Viscoplastic
 {
+  /// The components of stress @p normal in the plane of the section, in 3D all.
+  template <int dim>
+  Tensor<1, dim>
+  in_plane(const SymmetricTensor<2, 3> &stress, const Tensor<1, dim> &normal)
+  {
+    Tensor<1, dim> traction;
+    for (unsigned int i = 0; i < dim; ++i)
+      for (unsigned int j = 0; j < dim; ++j)
+        traction[i] += stress[i][j] * normal[j];
+    return traction;
+  }
+
+
+
   /// What estimators of the error in space need of a mesh: the shape functions
   /// of V_h in all cells of this rank and its ghosts. Cells that differ by a
   /// translation share them, in bodies of revolution by one along the axis, so

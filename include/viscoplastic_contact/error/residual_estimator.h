@@ -53,7 +53,8 @@ namespace Viscoplastic
   /// The estimate bounds the error of one step for given z; the error that has
   /// accumulated in z is not part of it. An initial stress, which may vary in
   /// cells and balance the loads there, is taken as it is, and not as the cell
-  /// means that z holds of it; so is the thermal stress. Cells of absent
+  /// means that z holds of it; so is the thermal stress, but with mean
+  /// dilatation, where the equations know its means alone. Cells of absent
   /// materials count for nothing, and faces towards them as free ones of
   /// Gamma_2.
   ///
@@ -71,7 +72,7 @@ namespace Viscoplastic
     {
       /// With ghosts, Cartesian.
       const DistributedVector &u;
-      /// Without thermal stress; may be empty.
+      /// Without thermal stress, but with mean dilatation; may be empty.
       const IrreversibleStress &z;
       /// Of the data; none, for fields that have no data.
       std::optional<double> t;
@@ -216,7 +217,7 @@ namespace Viscoplastic
     void
     make_initial_stress();
     void
-    make_expansion();
+    make_thermal_points();
     void
     find_other_bodies();
     void
@@ -339,11 +340,19 @@ namespace Viscoplastic
     void
     for_each_face(const Call &call) const;
 
-    /// alpha of the cells, and T_0 at the points of all faces; empty where
-    /// nothing expands.
-    std::vector<double> expansion, reference_temperature;
-    /// -E alpha (T - T_0) nu there, kept if the temperature stays.
-    mutable std::vector<Tensor<1, dim>> thermal_tractions;
+    /// Where the thermal stress, -E alpha (T - T_0), has a traction nu that the
+    /// other side of the face does not balance: at the boundary and where
+    /// unlike materials meet.
+    struct ThermalPoint
+    {
+      std::size_t    traction; // position
+      Point<dim>     x;
+      double         reference; // T_0
+      Tensor<1, dim> of_degree; // -E alpha nu
+    };
+    std::vector<ThermalPoint> thermal_points;
+    /// T there, kept if it stays.
+    mutable std::optional<std::vector<double>> temperatures;
 
     /// sigma nu at all faces: kept, since a new array for each step costs as
     /// much as to fill it.

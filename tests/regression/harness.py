@@ -116,8 +116,7 @@ class Fields:
     """One output time of a VTU series, all pieces joined."""
 
     def __init__(self, pieces):
-        # a file of a face may have no points at all: empty arrays to join
-        offset, points, cells = 0, [np.zeros((0, 3))], []
+        offset, points, cells = 0, [], []
         for piece in pieces:
             points.append(piece.points)
             if len({block.type for block in piece.cells}) != 1:

@@ -541,6 +541,7 @@ class BallCreep(TestCase):
         )
         self.check_identities(result, tolerance=COUPLED)
         mu, K, R, force = 900 / 2.92, 900 / 3 / 0.08, 10, 10
+        depths = []
         for t in (1, 60, 600, 3600):
             row = result.row(t)
             self.assertClose(result["contact_force_y"][row], -force, relative=1e-6)
@@ -549,9 +550,14 @@ class BallCreep(TestCase):
             modulus = 1 / (1 / plate + 0.91 / 210e3)
             a = (0.75 * force * R / modulus) ** (1 / 3)
             # measured: at most 0.029 and 0.052, of cells of an eighth of it
-            self.assertClose(result["point0_y"][row], -(a**2) / R, relative=0.04)
+            depths.append((-result["point0_y"][row], a**2 / R))
+            self.assertClose(*depths[-1], relative=0.04)
             peak = 1.5 * force / np.pi / a**2
             self.assertClose(result["max_pressure"][row], peak, relative=0.07)
+        # What the mesh adds is much the same. Measured: 0.005; 0.012 with a Maxwell
+        # viscosity of 7e6
+        found, known = np.divide(depths[-1], depths[-2])
+        self.assertClose(found, known, relative=0.008)
         up = result["point0_y"][[result.row(t) for t in (3600, 3601, 7200)]]
         self.assertGreater(np.diff(up).min(), 0.25 * -up[0])
 

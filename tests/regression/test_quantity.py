@@ -399,13 +399,17 @@ class Kept(TestCase):
         self.assertNotEqual(point["cells"].max(), force["cells"].max())
 
     def test_on_1_2_3_ranks(self):
-        scene = {**COARSE_SLAB, "Solver/Linear solver": "multigrid"}
+        # By default iterations leave up to a twentieth of the estimate, and an estimate
+        # that differs by a per cent asks for other cells.
+        scene = {
+            **COARSE_SLAB,
+            "Solver/Linear solver": "multigrid",
+            "Solver/Contact tolerance": 1e-10,
+        }
         for column in "reaction_3_x", "friction_dissipation":
             one = run("slab", of(column, 0.005, **scene))
             several = run("slab", of(column, 0.005, **scene), ranks=3)
-            # Cells are chosen by dual solutions to 1e-6, and a few are as good as
-            # others: 950 or 953, by ranks and processors.
-            self.assertClose(several["cells"], one["cells"], 1e-2)
+            self.assertEqual(list(several["cells"]), list(one["cells"]))
             # Steps are chosen by the dual problem, which is solved to 1e-6,
             # and each begins where the one before has ended.
             self.assertClose(several["t"], one["t"], 5e-3)

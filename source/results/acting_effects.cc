@@ -92,6 +92,11 @@ namespace Viscoplastic
              << 100. * run.utilization.value
              << " % of a bound was needed; on bilateral contact 'Friction law' "
                 "= glued gives the same for less.";
+        // The tolerance of a quantity may leave stresses far less exact.
+        if (run.errors)
+          text << " Tractions of single nodes, as where cells change their "
+                  "size, have errors of the order of that in the energy norm, "
+               << 100. * run.errors->relative() << " %.";
         result.push_back(text.str());
       }
     bool has_given_bound = false, has_computed_pressure = false,

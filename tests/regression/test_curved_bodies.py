@@ -372,6 +372,39 @@ class ShrinkFit(TestCase):
             one["contact_force_x"][-1], other["contact_force_x"][-1], relative=0.01
         )
 
+    def test_shear_where_cells_change_their_size(self):
+        """True rings have none. That of the mesh falls with it, is no larger where faces
+        do not match than where they do, and is no friction that a note may speak of."""
+        coulomb = {"Boundary 1/Friction law": "coulomb"}
+        coulomb["Boundary 1/Friction coefficient"] = 0.3
+        shear = []
+        for level, outer_cells, sides, ranks in (
+            (1, 8, "22: 1", 1),
+            (2, 8, "22: 1", 3),
+            (2, 6, "22: 1, 2: 1", 1),
+            (2, 8, "2: 1", 2),
+        ):
+            rings = f"0, 0 : 1 : 2 : 6 : true | 0, 0 : 2 : 3 : {outer_cells} : true"
+            changes = {
+                "Geometry/Arguments": rings,
+                "Geometry/Global refinements": level,
+                "Geometry/Boundary refinements": sides,
+            }
+            result = fit({**coulomb, **changes}, ranks)
+            shear.append(0.3 * result["max_utilisation"][-1])
+            # measured: 1.026, 1.011, 1.023, 1.008
+            self.assertClose(result["max_pressure"][-1], self.pressure, relative=0.03)
+        coarse, fine, matching, secondary = shear
+        # measured: 1.9e-2, 7.7e-3, 8.3e-3
+        self.assertLess(fine, coarse / 2)
+        self.assertLess(fine, matching)
+        # Faces of 1/24 and 1/48 of the quarter. Measured: 1.68e-2
+        self.assertClose(secondary, np.pi / 2 * (1 / 24 - 1 / 48) / 2, relative=0.05)
+        self.assertRegex(
+            " ".join(result.stdout.split()),
+            r"have errors of the order of that in the energy norm, 6\.\d+ %\.",
+        )
+
     def test_turned_glued_rings(self):
         """A rigid turn meets no more resistance than the geometry's error."""
         energies = []

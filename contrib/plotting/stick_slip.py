@@ -113,6 +113,7 @@ def draw_maps(results, times, pieces, left_out):
         lower.pcolormesh(
             ends, times, rates, cmap=shade.map, norm=shade.norm, rasterized=True
         )
+        lower.set_facecolor(style.OPEN)
         show(lower.xaxis, line.label(length), length)
         occurring.append(np.unique(states))
     for row in panels:

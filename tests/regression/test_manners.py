@@ -212,6 +212,15 @@ class Check(Manners):
             self.assertIn("Stability limit " + words, text)
             self.assertEqual(text.count("Stability limit"), 1)
 
+    def test_foundation_that_withdraws(self):
+        """Of a shrink fit with the wrong sign."""
+        for distance, is_told in ("0.001", True), ("-0.001", False):
+            sets = f"Foundation displacement={distance}", "Gap=0"
+            sets = [word for text in sets for word in ("--set", f"Boundary 1/{text}")]
+            text = self.call("--check", scene_file("shrink_fit_2d"), *sets).stdout
+            words = "'Boundary 1/Foundation displacement' is never negative"
+            self.assertEqual(words in text, is_told)
+
     def test_refuses_what_a_run_refuses(self):
         process = self.call(
             "--check", SLAB, "--set", "Material/Young's modulus=-1", code=1

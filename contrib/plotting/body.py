@@ -63,8 +63,8 @@ class Body2D(Body):
         axes.set_ylim(low[1], high[1])
         if self.scale.window:
             self.draw_whole(axes, outline)
-        show(axes.xaxis, "$x$", self.scale.length)
-        show(axes.yaxis, "$y$", self.scale.length)
+        for axis, label in zip((axes.xaxis, axes.yaxis), self.scale.axes):
+            show(axis, label, self.scale.length)
         for side in ("top", "right"):
             axes.spines[side].set_visible(False)
         # Off the body, whose edges often run along the axes.
@@ -132,7 +132,9 @@ class Body2D(Body):
         """Corners of what is drawn: the body with its supports and loads."""
         if self.scale.window:
             return np.array(self.scale.window)
-        low, high = self.scale.low[:2].copy(), self.scale.high[:2]
+        # A little more, so that what ends there is seen to end.
+        beside = 0.01 * self.scale.size
+        low, high = self.scale.low[:2] - beside, self.scale.high[:2] + beside
         if self.scale.supports:
             below, above = supports.reach(self.scale.supports, self.scale)
             low, high = low - below, high + above

@@ -107,6 +107,10 @@ class Scale:
             # What is drawn lies between the extremes of each cell.
             of_cells = field(body, name)[body.cells]
             values += [of_cells.min(axis=1), of_cells.max(axis=1)]
+        # The third stress, around the axis, is that of zz.
+        self.axes = "$x$", "$y$"
+        if results.is_of_revolution():
+            self.axes = "$x$, radius", "$y$, along the axis"
         on_axis = self.low[0] < 1e-6 * self.size
         self.mirrored = results.is_of_revolution() and (
             on_axis if options.mirror is None else options.mirror

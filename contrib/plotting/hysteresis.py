@@ -190,6 +190,8 @@ def draw(results, options):
         plane=not any(name.endswith("_z") for name in possible_forces)
         and not results.is_of_revolution(),
         is_axial=direction(force) == "axial",
+        # What moves the body works on it; a foundation is moved by it.
+        whose="by" if displacement.startswith("foundation") else "on",
     )
 
 
@@ -205,9 +207,10 @@ def drives(force, names):
     return bool(match) and f"boundary{match.group(1)}_{match.group(2)}" in names
 
 
-def draw_loop(results, t, displacement, force, plane, is_axial):
+def draw_loop(results, t, displacement, force, plane, is_axial, whose):
     """plane: in plane strain forces are those on a unit of thickness; is_axial: the
-    force of the whole section over the strain, the displacement of such a unit."""
+    force of the whole section over the strain, the displacement of such a unit;
+    whose: `by' the body, negative where it dissipates, or `on' it."""
     (u, u_label), (f, f_label) = displacement, force
     units = Units.of(results)
     time = units.unit("time", results.statistics["t"])
@@ -219,14 +222,14 @@ def draw_loop(results, t, displacement, force, plane, is_axial):
         axes.fill(u[begin:], f[begin:], color=style.SERIES[5], alpha=0.2, lw=0)
         area = (
             rf"loop area $\oint {of}$ = {energy.value(work(u[begin:], f[begin:]))}: "
-            f"work per cycle{' and unit depth' if plane else ''}"
+            f"work {whose} the body per cycle{' and unit depth' if plane else ''}"
         )
         if begin > 0:
             area += f" (from $t$ = {time.value(t[begin])})"
     else:
         area = (
             rf"open path, $\int {of}$ = {energy.value(work(u, f))}: "
-            f"work{' per unit depth' if plane else ''}"
+            f"work {whose} the body{' per unit depth' if plane else ''}"
             f" ($t$ = {time.value(t[0])} to {time.value(t[-1])})"
         )
     points = np.column_stack([u, f])

@@ -66,7 +66,10 @@ def draw(results, options):
         for i, line in enumerate(lines(contact)):
             if i == len(pieces):
                 pieces.append((line, []))
-            pieces[i][1].append((line.s, states[line.nodes], line.component(rates)))
+            here = states[line.nodes]
+            # What moves past a foundation that it does not touch does not slip.
+            rate = np.where(here == style.NO_CONTACT, np.nan, line.component(rates))
+            pieces[i][1].append((line.s, here, rate))
     pieces = [piece for piece in pieces if len(piece[1]) == len(edges) - 1]
     shown = pieces[:MOST_PIECES]
     return draw_maps(results, edges, shown, len(pieces) - len(shown))
@@ -85,6 +88,7 @@ def draw_maps(results, times, pieces, left_out):
     everything = np.concatenate(
         [[0.0], *(rate for _, found in pieces for _, _, rate in found)]
     )
+    everything = everything[np.isfinite(everything)]
     shade = style.Shade(everything, "the slip rate")
     states_map = ListedColormap(
         [
@@ -109,6 +113,7 @@ def draw_maps(results, times, pieces, left_out):
         lower.pcolormesh(
             ends, times, rates, cmap=shade.map, norm=shade.norm, rasterized=True
         )
+        lower.set_facecolor(style.OPEN)
         show(lower.xaxis, line.label(length), length)
         occurring.append(np.unique(states))
     for row in panels:
@@ -129,5 +134,8 @@ def draw_maps(results, times, pieces, left_out):
     heading = style.title(results.name, "where and when the contact face slips")
     if left_out:
         heading += f" (the {MOST_PIECES} longest of {MOST_PIECES + left_out} pieces)"
+    steps = len(results.statistics.get("t", ())) - 1
+    if steps > len(times) - 1:
+        heading += f"\n{len(times) - 1} outputs of {steps} steps ('Output/Fields every')"
     figure.suptitle(heading, fontsize="large")
     return figure

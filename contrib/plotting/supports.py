@@ -26,7 +26,7 @@ HATCHED = {
     "clamped": "clamped",
     "displacement": "prescribed displacement",
     "contact": "foundation",
-    "unilateral": "unilateral contact",
+    "unilateral": "contact that may open",
 }
 # Lengths in shares of the body's size.
 REACH = {"symmetry": 0.025, "clamped": 0.025, "traction": 0.085}  # of symbols
@@ -446,21 +446,22 @@ def load_key(label, marker):
 
 
 def draw_body_force(axes, body, supports):
-    """An arrow in the middle of the body for the force there on a unit of volume."""
-    before, middle = (
-        points[body.body.cells].mean(axis=(0, 1))[None, :2]
+    """An arrow in the middle of the body for the mean force on a unit of volume."""
+    before, deformed = (
+        points[body.body.cells].mean(axis=1)[:, :2]
         for points in (body.body.points, body.deformed)
     )
     try:
-        force = supports.body_force(before, body.time)
+        forces = supports.body_force(before, body.time)
     except UserError:  # an expression of more than place and time
         return []
-    size = np.linalg.norm(force)
-    if size <= 0.0:
+    middle, force = deformed.mean(axis=0), forces.mean(axis=0)
+    if np.linalg.norm(force) <= 0.0:
         return []
+    sizes = np.linalg.norm(forces, axis=1)
     axes.quiver(
-        *middle.T,
-        *(LONGEST * body.scale.size * force / size).T,
+        *middle,
+        *(LONGEST * body.scale.size * force / np.linalg.norm(force)),
         angles="xy",
         scale_units="xy",
         scale=1.0,
@@ -471,8 +472,11 @@ def draw_body_force(axes, body, supports):
         width=0.006,
         zorder=4,
     )
-    unit = supports.units.unit("force density", size)
-    label = f"body force {unit.value(size)} in the middle"
+    unit = supports.units.unit("force density", sizes)
+    least, largest = unit.value(sizes.min()), unit.value(sizes.max())
+    label = f"body force {largest}"
+    if least != largest:
+        label = f"body force, {least} to {largest}"
     return [load_key(label, r"$\Rightarrow$")]
 
 

@@ -16,7 +16,7 @@ from plotting.units import Units, plain_number
 from . import bill, tables, written
 from .body import fitting_body
 from .curves import curves, info
-from .markup import folded_up, items, listing, picture, section, value
+from .markup import folded_up, formula, items, listing, picture, section, value
 from .page import Page, as_link
 
 
@@ -97,7 +97,8 @@ def answer(results, about):
         ("estimated_error_of_quantity", "the quantity of interest"),
     ):
         if key in about:
-            of = escape(about[key].get("quantity", of))
+            if "quantity" in about[key]:
+                of = formula(quantities.column(about[key]["quantity"])[0])
             share = about[key]["relative"]
             words = f"<b>{tables.data(share, tables.percent(share))}</b>"
             parts.append(f"estimated error of {of} {words}")

@@ -71,7 +71,9 @@ def columns(statistics, names, units, errors):
                 f'<span title="{escape(name)}">{formula(words)}</span>',
                 data(values[-1], value(unit, but_rounding(values[-1], values[at]))),
                 data(values[at], value(unit, values[at])),
-                data(statistics["t"][at], value(time, statistics["t"][at])),
+                data(statistics["t"][at], value(time, statistics["t"][at]))
+                # An instant in pictures; what slips into equilibrium has slipped.
+                + " (initial equilibrium)" * (name == "slip_area" and at == 0),
             ]
         )
         if errors:
@@ -112,7 +114,8 @@ def errors(results, about, units):
             continue
         of, kind = "the solution in the energy norm", "energy norm"
         if "quantity" in found:
-            of, kind = escape(found["quantity"]), column(found["quantity"])[1]
+            words, kind = column(found["quantity"])
+            of = formula(words)
         unit = units.unit(kind, found["total"])
         at = data(found["t"], value(time, found["t"]))
 

@@ -237,6 +237,16 @@ namespace Viscoplastic
             modulus < point.parameters[youngs_modulus])
           message << "Young's modulus is " << modulus
                   << "; it must not be below the long-term one.";
+        else if (stiffness.is_isotropic())
+          {
+            // mu_inf <= mu and K_inf <= K, in numbers of four digits.
+            const double E_inf = point.parameters[youngs_modulus],
+                         least = E_inf / (2. * stiffness.shear_modulus()) - 1.,
+                         most  = 0.5 - E_inf / (6. * stiffness.bulk_modulus());
+            message << "with this Young's modulus the ratio must be at least "
+                    << std::ceil(1e4 * least - 1e-6) / 1e4 << " and at most "
+                    << std::floor(1e4 * most + 1e-6) / 1e4 << '.';
+          }
         else
           message << "the smallest eigenvalue of E - E_inf is " << smallest
                   << "; it must be zero or positive.";

@@ -225,6 +225,9 @@ namespace Viscoplastic
                            "a fixed mesh."));
     if (!has_tolerance)
       return;
+    AssertThrow(error_control.tolerance < 1.,
+                ExcMessage("'Error control/Tolerance' = 1 lets the error be as "
+                           "large as the solution; 1 % is 0.01."));
     AssertThrow(error_control.error_estimator,
                 ExcMessage("'Error control/Tolerance' needs an estimate of the "
                            "error; set 'Error control/Error bar' = true."));

@@ -89,9 +89,16 @@ namespace Viscoplastic
         std::ostringstream text;
         text << std::setprecision(3)
              << "friction has never acted: nothing has slipped, and at most "
-             << 100. * run.utilization.value
-             << " % of a bound was needed; on bilateral contact 'Friction law' "
-                "= glued gives the same for less.";
+             << 100. * run.utilization.value << " % of a bound was needed";
+        if (std::any_of(scene.boundary.begin(),
+                        scene.boundary.end(),
+                        [](const auto &pair) {
+                          return pair.second.has_friction() &&
+                                 !pair.second.is_unilateral();
+                        }))
+          text << "; on bilateral contact 'Friction law' = glued gives the "
+                  "same for less";
+        text << '.';
         // The tolerance of a quantity may leave stresses far less exact.
         if (run.errors)
           text << " Tractions of single nodes, as where cells change their "

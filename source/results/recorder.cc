@@ -316,7 +316,7 @@ namespace Viscoplastic
     run.print(out, scene.parameters.units, scene.names, coarser);
     const double n = run.n_steps;
     out << std::setprecision(3) << "Iterations per step: ";
-    if (may_be_implicit())
+    if (newton_iterations > 0)
       out << newton_iterations / n << " of Newton's method, ";
     if (discretization->face)
       out << contact_iterations / n << " of the active set, ";

@@ -168,7 +168,9 @@ namespace Viscoplastic
          << " has not been kept: at t = " << summary.t
          << scene.unit(Quantity::time) << " the error is estimated as "
          << summary.relative() << " of the "
-         << (scene.quantity ? "largest " + scene.quantity->name : "solution")
+         << (scene.quantity ?
+               "largest " + scene.names.quantity(scene.quantity->name) :
+               "solution")
          << ", of it " << errors.space / size << " by the mesh, "
          << errors.history / size << " by the history, "
          << (errors.time + errors.friction) / size << " by the time steps and "
@@ -337,12 +339,18 @@ namespace Viscoplastic
         else
           text << " the norm of the strain is " << run.strain.value
                << " in the mean of a cell";
-        text << "; small strains are assumed, so that "
-             << (is_far || run.strain.value > 1. ?
-                   "this is flow without end or a load far too large, and only "
-                   "its onset means something." :
-                   "results may be wrong by about that, relatively, which no "
-                   "error bar has.");
+        if (run.strain.value > 1. && run.displacement.value < 0.05 * size)
+          text << ", although displacements are small: a point alone carries "
+                  "force, as where a symmetry ends, and strains there grow as "
+                  "cells become smaller (the stress is largest at x = ("
+               << run.von_mises_position << ")).";
+        else
+          text << "; small strains are assumed, so that "
+               << (is_far || run.strain.value > 1. ?
+                     "this is flow without end or a load far too large, and "
+                     "only its onset means something." :
+                     "results may be wrong by about that, relatively, which no "
+                     "error bar has.");
         result.push_back(text.str());
       }
     return result;

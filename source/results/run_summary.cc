@@ -64,6 +64,9 @@ namespace Viscoplastic
           const StatisticsRow::Entry &entry = run.at_end[e];
           if (!coarser && entry.at_end == StatisticsRow::AtEnd::compared)
             continue;
+          // New meshes may all have been those of passes before.
+          if (entry.name == "adaptation_energy" && entry.values[0] == 0.)
+            continue;
           std::ostringstream text;
           for (std::size_t i = 0; i < entry.values.size(); ++i)
             {
@@ -120,7 +123,10 @@ namespace Viscoplastic
                   number(run.slip_area.value) + " of " +
                     number(run.friction_area) +
                     units.suffix(Quantity::area, dim) +
-                    " at t = " + with.time(run.slip_area.t));
+                    " at t = " + with.time(run.slip_area.t) +
+                    (run.slip_area.value > 0. && run.slip_area.t == 0. ?
+                       ", into the initial equilibrium" :
+                       ""));
       if (run.slip_rate.value > 0.)
         print_row(out,
                   "slip rate",

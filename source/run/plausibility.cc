@@ -52,13 +52,13 @@ namespace Viscoplastic
 
 
 
-    /// Moduli of the cells of one material, and the times |sigma|/|G| of the
-    /// cells in which its law flows at a stress.
+    /// Moduli of the cells of one material, and of those in which its law flows
+    /// at a stress the times |sigma|/|G| and 2/r.
     template <int dim>
     struct MaterialRanges
     {
       const Material<dim> *material;
-      ValueRange           youngs_modulus, poissons_ratio, time;
+      ValueRange           youngs_modulus, poissons_ratio, time, limit;
     };
 
 
@@ -73,7 +73,7 @@ namespace Viscoplastic
       std::vector<MaterialRanges<dim>> result;
       for (const auto &material : scene.materials)
         if (!material->is_absent)
-          result.push_back({material.get(), {}, {}, {}});
+          result.push_back({material.get(), {}, {}, {}, {}});
       const auto            now = discretization.laws.at(stress.t);
       SymmetricTensor<2, 3> uniaxial;
       uniaxial[0][0]    = stress.value;
@@ -92,23 +92,35 @@ namespace Viscoplastic
                                  discretization.moduli(c);
           ranges.youngs_modulus.add(youngs_modulus(stiffness));
           ranges.poissons_ratio.add(stiffness.poissons_ratio());
-          if (const ViscoplasticLaw *law = now.law(c); law && stress.value > 0.)
-            {
-              const double rate = law
-                                    ->rate(uniaxial,
-                                           stiffness.strain(uniaxial),
-                                           stiffness,
-                                           now.point(c, 0))
-                                    .norm();
-              if (rate > 0.)
-                ranges.time.add(uniaxial.norm() / rate);
-            }
+          const ViscoplasticLaw *law = material->law.get();
+          if (law == nullptr || stress.value == 0.)
+            continue;
+          Point<3> x;
+          for (unsigned int d = 0; d < dim; ++d)
+            x[d] = cells[c]->center()[d];
+          const LawPoint point =
+            now.law(c) ? now.point(c, 0) :
+                         law->point(x,
+                                    std::max(stress.t, material->added_at),
+                                    now.temperature(c, 0));
+          const auto   strain = stiffness.strain(uniaxial);
+          const double rate =
+            law->rate(uniaxial, strain, stiffness, point).norm();
+          if (rate == 0.)
+            continue;
+          ranges.time.add(uniaxial.norm() / rate);
+          if (const double r =
+                law->relaxation_rate(uniaxial, strain, stiffness, point);
+              r > 0.)
+            ranges.limit.add(2. / r);
         }
       const MPI_Comm communicator =
         discretization.space.dof_handler.get_communicator();
       for (auto &ranges : result)
-        for (ValueRange *range :
-             {&ranges.youngs_modulus, &ranges.poissons_ratio, &ranges.time})
+        for (ValueRange *range : {&ranges.youngs_modulus,
+                                  &ranges.poissons_ratio,
+                                  &ranges.time,
+                                  &ranges.limit})
           range->join(communicator);
       return result;
     }
@@ -279,10 +291,12 @@ namespace Viscoplastic
                               false)})
           if (*datum)
             add(here.largest(**datum), name + where, is_load);
-        double displacement =
-          condition.foundation_displacement ?
-            here.largest(*condition.foundation_displacement) :
-            0.;
+        // A foundation that withdraws from what may leave it loads nothing.
+        const auto &foundation   = condition.foundation_displacement;
+        double      displacement = !foundation ? 0. :
+                                   condition.is_unilateral() ?
+                                                 -here.least(*foundation) :
+                                                 here.largest(*foundation);
         for (const auto &component : condition.displacement)
           if (component)
             displacement = std::max(displacement, here.largest(*component));
@@ -308,7 +322,7 @@ namespace Viscoplastic
                         parameters.units.suffix(Quantity::stress, dim),
                       time_unit = parameters.units.suffix(Quantity::time, dim);
     const auto entries          = parameters.entries_as_written();
-    for (const auto &[material, modulus, ratio, time] :
+    for (const auto &[material, modulus, ratio, time, limit] :
          ranges_of_materials(discretization, stress))
       {
         out << material->name
@@ -339,6 +353,10 @@ namespace Viscoplastic
                   << time_unit;
             else
               out << "does not flow";
+            // That of the initial state knows nothing of it.
+            if (std::isfinite(material->added_at) && limit.largest > 0.)
+              out << "; stability limit 2/r there, once it is added: "
+                  << limit.text() << time_unit;
           }
         out << '\n';
       }
@@ -371,6 +389,14 @@ namespace Viscoplastic
       body_diagonal(discretization.space.dof_handler.get_triangulation());
     for (const auto &[id, condition] : scene.boundary)
       {
+        if (stress.value == 0. && condition.is_unilateral() &&
+            condition.foundation_displacement && !condition.given_gap)
+          result.push_back(
+            "'Boundary " + std::to_string(id) +
+            "/Foundation displacement' is never negative, so that " +
+            scene.names.of("boundary", id) + " is never pressed on the " +
+            (condition.against ? "other body" : "foundation") +
+            ", and nothing else loads the scene.");
         if (!condition.is_unilateral() ||
             !(condition.against || condition.given_gap))
           continue;
@@ -397,7 +423,7 @@ namespace Viscoplastic
     const auto in_si = [](const double value, const std::string &unit) {
       return number(value) + ' ' + unit + " in the SI";
     };
-    for (const auto &[material, modulus, ratio, time] : ranges)
+    for (const auto &[material, modulus, ratio, time, limit] : ranges)
       {
         // From soft gels to diamond, which has 1.2e12 Pa.
         constexpr double least = 1e3, largest = 1.3e12;

@@ -55,7 +55,8 @@ namespace Viscoplastic
       if (std::none_of(scene.materials.begin(),
                        scene.materials.end(),
                        [](const auto &material) {
-                         return material->law != nullptr;
+                         return material->law != nullptr &&
+                                !std::isfinite(material->added_at);
                        }))
         return;
       const double rate =

@@ -11,7 +11,8 @@ namespace Viscoplastic
     const std::string                                          &column,
     const std::map<types::boundary_id, BoundaryCondition<dim>> &boundary,
     const unsigned int                                          n_points,
-    const std::optional<QuantityOfInterest::Kind>               of_section)
+    const std::optional<QuantityOfInterest::Kind>               of_section,
+    const PlaceNames                                           &names)
   {
     using Kind = QuantityOfInterest::Kind;
     std::vector<QuantityOfInterest> known;
@@ -49,7 +50,8 @@ namespace Viscoplastic
                                                                   "_"),
                                       boundary,
                                       n_points,
-                                      of_section);
+                                      of_section,
+                                      names);
         if (n_contacts > 1 && condition.has_friction())
           add(Kind::friction_force, id, "friction_force_" + std::to_string(id));
         if (n_contacts > 1 && condition.is_unilateral())
@@ -69,20 +71,21 @@ namespace Viscoplastic
          0,
          *of_section == Kind::axial_force ? "axial_force" : "axial_strain"});
 
-    std::string names;
+    std::string text;
     for (const QuantityOfInterest &quantity : known)
       {
         if (quantity.name == column)
           return quantity;
-        names += (names.empty() ? "" : ", ") + quantity.name;
+        text += (text.empty() ? "" : ", ") + names.quantity(quantity.name);
       }
     AssertThrow(false,
-                ExcMessage("'Error control/Quantity': '" + excerpt(column) +
+                ExcMessage("'Error control/Quantity': '" +
+                           excerpt(names.quantity(column)) +
                            "' is none of the quantities of this scene whose "
                            "error can be estimated: " +
-                           (names.empty() ? "there are none; give 'Output/"
-                                            "Points'" :
-                                            names) +
+                           (text.empty() ? "there are none; give 'Output/"
+                                           "Points'" :
+                                           text) +
                            "."));
     return {};
   }

@@ -78,7 +78,8 @@ namespace Viscoplastic
         output_points.size(),
         axial_force  ? std::optional(QuantityOfInterest::Kind::axial_strain) :
         axial_strain ? std::optional(QuantityOfInterest::Kind::axial_force) :
-                       std::nullopt);
+                       std::nullopt,
+        names);
   }
 
 

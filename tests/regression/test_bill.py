@@ -126,7 +126,17 @@ class NeverActed(TestCase):
         self.check(
             "slab",
             {**SMALL, "Boundary 2/Friction bound": 10},
+            ("friction has never acted: nothing has slipped", "'Friction law' = glued"),
+        )
+        self.check(
+            "slab",
+            {
+                **SMALL,
+                "Boundary 2/Friction bound": 10,
+                "Boundary 2/Contact law": "unilateral",
+            },
             ("friction has never acted: nothing has slipped",),
+            ("glued",),
         )
 
     def test_foundation_at_rest(self):

@@ -55,6 +55,37 @@ class Options(Manners):
         demo = re.search(r"^ +viscoplastic_contact (\S+)$", process.stderr, re.M)
         self.assertTrue((self.work / demo.group(1)).exists(), demo.group(1))
 
+    def test_scripts_take_a_program_that_is_there(self):
+        """Then nothing is built; what is built, otherwise, tells how far it is."""
+        setup = self.work / "setup"
+        text = (SOURCE / "contrib" / "setup").read_text()
+        setup.write_text(text[: text.index("\nset_up\n")].replace("-ge 60", "-ge 0"))
+
+        def run(commands, program, code=0):
+            process = subprocess.run(
+                ["bash", "-c", f'source "{setup}"; python=true; {commands}'],
+                env={**os.environ, "VISCOPLASTIC_CONTACT": program},
+                capture_output=True,
+                text=True,
+            )
+            self.assertEqual(process.returncode, code, process.stderr)
+            return process
+
+        process = run("configure() { exit 9; }; provide_program", str(EXECUTABLE))
+        self.assertEqual(process.stdout, f"Using {EXECUTABLE}; nothing is built.\n")
+        process = run("provide_program", "nowhere", code=1)
+        self.assertIn("is 'nowhere', which is no program", process.stderr)
+        built = "configure() { :; }; build() { :; }; provide_program"
+        shown = run(f"{built}; echo $VISCOPLASTIC_CONTACT", "").stdout
+        self.assertTrue(shown.endswith("build/viscoplastic_contact\n"), shown)
+        compiler = "compiler() { echo '[1/2] a file'; echo more; return $1; }; "
+        log = self.work / "log"
+        shown = run(f'{compiler}quietly Building "{log}" compiler 0', "").stdout
+        self.assertEqual(shown, "[1/2] a file\n")
+        self.assertEqual(log.read_text(), "[1/2] a file\nmore\n")
+        process = run(f'{compiler}quietly Building "{log}" compiler 1', "", code=1)
+        self.assertIn("more\nError: Building failed", process.stderr)
+
     def test_help(self):
         text = self.call("--help").stdout
         for option in (
@@ -180,6 +211,15 @@ class Check(Manners):
             text = self.call("--check", SLAB, *SMALL, *sets).stdout
             self.assertIn("Stability limit " + words, text)
             self.assertEqual(text.count("Stability limit"), 1)
+
+    def test_foundation_that_withdraws(self):
+        """Of a shrink fit with the wrong sign."""
+        for distance, is_told in ("0.001", True), ("-0.001", False):
+            sets = f"Foundation displacement={distance}", "Gap=0"
+            sets = [word for text in sets for word in ("--set", f"Boundary 1/{text}")]
+            text = self.call("--check", scene_file("shrink_fit_2d"), *sets).stdout
+            words = "'Boundary 1/Foundation displacement' is never negative"
+            self.assertEqual(words in text, is_told)
 
     def test_refuses_what_a_run_refuses(self):
         process = self.call(

@@ -22,7 +22,7 @@ from plotting import history, hysteresis, overview, quantities, style
 from plotting.body_base import Scale, folded
 from plotting.geometry import corner_volumes
 from plotting.results import NoPicture, Results, UserError, read_statistics
-from plotting.supports import Supports
+from plotting.supports import Supports, draw_body_force
 from plotting.units import DAY, Unit, Units, show
 from viscoplastic_contact.tables import without_unit
 
@@ -305,6 +305,19 @@ class Supported(TestCase):
         found = Supports(results, Units(duration=2.0))
         places, normals = np.array([(0.5, 2.0)]), np.array([(0.0, 1.0)])
         self.assertClose(found.body_force(places, 2.0), [(0, -2)], absolute=1e-12)
+        # of two cells, in the legend
+        record.points = np.array([(1.0, 0, 0), (3.0, 0, 0)])
+        record.cells = np.array([[0], [1]])
+        body = SimpleNamespace(
+            body=record,
+            deformed=record.points,
+            time=0.5,
+            scale=SimpleNamespace(size=1.0),
+        )
+        figure, axes = plt.subplots()
+        self.addCleanup(plt.close, figure)
+        (key,) = draw_body_force(axes, body, found)
+        self.assertEqual(key.get_label(), "body force, 1 to 3")
         load = found.traction(0, places, normals, 2.0)
         self.assertClose(load, [(2, 6 - 10)], absolute=1e-12)
         # only where the role uses them
@@ -378,7 +391,15 @@ class Supported(TestCase):
         axes = figure.axes[0]
         words = axes.get_xlabel(), axes.get_ylabel()
         self.assertEqual(words, (r"axial strain $\varepsilon_{zz}$", "axial force $N$ [N]"))
-        self.assertIn("= 2 J/m: work per unit depth", axes.get_title())
+        self.assertIn("= 2 J/m: work on the body per unit depth", axes.get_title())
+        # A foundation that drags it: what is negative is dissipated.
+        statistics["friction_force_x"] = -np.arange(3.0)
+        belt = {"Role": "contact", "Foundation motion": "t; 0"}
+        results.data = {("Boundary 2", name): text for name, text in belt.items()}
+        figure = hysteresis.draw(results, options)
+        self.addCleanup(plt.close, figure)
+        title = figure.axes[0].get_title()
+        self.assertIn("= -2 J/m: work by the body per unit depth", title)
 
 
 if __name__ == "__main__":

@@ -309,7 +309,10 @@ class Figures(TestCase):
             self.assertEqual(len(corners), n_halves)
             self.assertClose(corners[-1][:, 0], corners[0][:, 0] * (3 - 2 * n_halves))
             low = begin if n_halves == 1 else -begin - 1
-            self.assertClose(axes.get_xlim(), (low, begin + 1), absolute=1e-9)
+            # with a margin, so that edges are whole
+            limits = low - 0.01, begin + 1.01
+            self.assertClose(axes.get_xlim(), limits, absolute=1e-9)
+            self.assertEqual("radius" in axes.get_xlabel(), revolved)
             outlines = [
                 line
                 for lines in axes.collections
@@ -875,6 +878,19 @@ class Pictures(TestCase):
         """The slipping part of each row of the stick-slip map is slip_area."""
         result = run("slab", {"Output/Fields every": 1})
         contact = result.series("contact")
+        results = Results(result.directory)
+        # Nothing is colored where nothing touches; outputs that are not steps are told.
+        record = results.read(results.contact[1][1])
+        for name in "contact_pressure", "bound":
+            record.data[name] = np.zeros(len(record.points))
+        record.data["gap"] = np.ones(len(record.points))
+        results.read, results.contact = lambda path: record, results.contact[:4]
+        results.dimension = lambda: 2
+        figure = stick_slip.draw(results, None)
+        self.addCleanup(plt.close, figure)
+        self.assertIn("3 outputs of 32 steps", figure._suptitle.get_text())
+        (rates,) = figure.axes[1].collections
+        self.assertTrue(np.ma.getmaskarray(rates.get_array()).all())
         from plotting.faces import friction_state
 
         results = Results(result.directory)

@@ -955,6 +955,10 @@ class Refused(TestCase):
     def test_unknown_columns(self):
         for column in "friction_force_z", "max_displacement", "point1_x":
             self.check(f"'{column}' is none of the quantities", **of(column))
+        top = {"Boundary 3/Name": "top"}
+        self.check("'friction_force_x of top' is none", **of("friction_force_3_x", **top))
+        self.check("reaction_y of top", **of("friction_force_3_x", **top))
+        self.check("1 % is 0.01", **{"Error control/Tolerance": 1})
 
     def test_without_estimate(self):
         self.check(

@@ -20,9 +20,11 @@ from plot_process import run_script
 
 sys.path[:0] = [str(SOURCE / "contrib"), str(SOURCE / "contrib" / "python")]
 
+from plotting import quantities
 from plotting.body_base import field
 from plotting.history import finite
 from plotting.results import Results
+from plotting.units import Units
 from reporting import bill, body, tables, thinning, written
 from reporting.markup import formula
 from reporting.surface import Surface
@@ -445,6 +447,19 @@ class Parts(TestCase):
         ):
             about = {"estimated_error": {"relative": share}, **jump}
             self.assertIn(words, tables.tolerance(results, about))
+
+    def test_places_have_their_names(self):
+        """Where a quantity is that of a point; what slips into equilibrium is told."""
+        parts = dict.fromkeys(("space", "total", "largest_value"), 1.0)
+        about = {"quantity": "point1_y", "t": 0.0, **parts}
+        statistics = {"t": np.arange(2.0), "slip_area": np.array([2.0, 1.0])}
+        results = SimpleNamespace(statistics=statistics, data={})
+        names = {"point 1": "crown"}
+        with mock.patch.object(quantities, "names_of_places", names):
+            text = tables.errors(results, {"estimated_error_of_quantity": about}, Units())
+        self.assertIn("Of displacement of crown, <i>y</i>, largest", text)
+        table = tables.columns(statistics, ["slip_area"], Units(), {})
+        self.assertIn("(initial equilibrium)", table)
 
     def test_bill_of_a_resumed_run(self):
         """The record has the seconds since the restart, the statistics all."""

@@ -211,6 +211,12 @@ class Beside(TestCase):
             self.assertRegex(printed, r"Material 1: E = 100 MPa, nu = 0.25, elastic")
             self.assertRegex(printed, r"Material 2: E = 200 MPa, nu = 0.3, elastic")
             self.assertNotRegex(printed, "inf|strain of about")
+        # mu = 200/2.6: the limit is 2 eta/mu. What is there is elastic.
+        creep = {"Material 2/Law": "maxwell", "Material 2/maxwell/Viscosity": 1000}
+        printed = check({**ADDED, **creep})
+        self.assertRegex(printed, r"it relaxes stress within .* = \S+; stability limit")
+        self.assertIn("limit 2/r there, once it is added: 26\n", printed)
+        self.assertNotIn("Stability limit", printed)
 
 
 class Added(TestCase):

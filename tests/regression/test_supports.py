@@ -393,6 +393,36 @@ class FreeBlock(TestCase):
         self.assertClose(total, -result.vector("load")[-1], absolute=1e-10)
         self.assertIn("carries a force", " ".join(result.stdout.split()))
 
+    def test_strains_at_a_point(self):
+        """Refined again and again they are large, which is not flow without end."""
+        text = """
+        set Dimension = 2
+        subsection Geometry
+          set Arguments = 4, 4 : 0, 0 : 1, 1 : true
+        end
+        subsection Loads
+          set Body force = 0; -0.0004
+        end
+        subsection Initial state
+          set Equilibrate = true
+        end
+        subsection Supports
+          set Points = 0, 1: y
+        end
+        subsection Boundary 0
+          set Role = symmetry
+        end
+        subsection Mesh refinement
+          set Strategy = residual
+          set Maximal level = 14
+        end
+        """
+        free = "subsection Boundary {}\nset Role = free\nend\n"
+        text += "".join(map(free.format, (1, 2, 3))) + "subsection Time\nset Phases = 1: 30\nend\n"
+        said = " ".join(run("hanging", {}, text=text).stdout.split())
+        self.assertRegex(said, r"a point alone carries force.* at x = \(\S+e-\d+ 1\)\)")
+        self.assertNotIn("flow without end", said)
+
     def test_maxwell_on_changing_meshes(self):
         """What holds nothing also holds nothing of a body that flows, whose mesh
         changes."""

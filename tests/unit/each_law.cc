@@ -253,7 +253,7 @@ namespace
                    "it must not be below the long-term one.");
     // Young's modulus is smaller, the bulk modulus larger.
     expect_refusal([] { FlowingBody(zener(0.9, 0.4, 1.)); },
-                   "it must be zero or positive.");
+                   "the ratio must be at least 0.125 and at most 0.275.");
     expect_refusal([] { FlowingBody(zener(0.9, 0.4, 1.), as_matrix()); },
                    "makes the body stiffer in the long term than at once");
     EXPECT_NO_THROW(FlowingBody(zener(1., 0.25, 1.)));

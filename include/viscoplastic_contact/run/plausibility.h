@@ -33,7 +33,7 @@ namespace Viscoplastic
 
   /// A line for each material: elastic moduli, law with its parameters, and how
   /// fast that law relaxes a uniaxial stress sigma of the size of @p stress,
-  /// |sigma|/|G|. Collective.
+  /// |sigma|/|G|, and 2/r there of what is added later. Collective.
   template <int dim>
   void
   describe_materials(const Discretization<dim> &discretization,

@@ -3,6 +3,7 @@
 
 #include <viscoplastic_contact/base/units.h>
 #include <viscoplastic_contact/scene/boundary_condition.h>
+#include <viscoplastic_contact/scene/place_names.h>
 
 #include <map>
 #include <optional>
@@ -74,12 +75,13 @@ namespace Viscoplastic
 
   /// The quantity that @p column names. Throws ExcMessage if there is none in
   /// a scene with these conditions and so many output points, in which @p
-  /// of_section, if any, is a quantity.
+  /// of_section, if any, is a quantity; it calls places by their @p names.
   template <int dim>
   QuantityOfInterest
   quantity_of_interest(
     const std::string                                          &column,
     const std::map<types::boundary_id, BoundaryCondition<dim>> &boundary,
     const unsigned int                                          n_points,
-    const std::optional<QuantityOfInterest::Kind>               of_section);
+    const std::optional<QuantityOfInterest::Kind>               of_section,
+    const PlaceNames                                           &names);
 } // namespace Viscoplastic

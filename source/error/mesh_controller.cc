@@ -218,7 +218,7 @@ namespace Viscoplastic
       return 1.;
     // Quantities behave like squares of the energy norm. Where contributions
     // happen to cancel, none of them may become larger. What is settled stays
-    // as it is on any mesh.
+    // as it is on any mesh; but of sums, it counts where it adds.
     constexpr double safety = QuantityEstimator<dim>::safety;
     const double     now =
       std::abs(quantity.space_correction - quantity.settled_space);

@@ -244,7 +244,6 @@ namespace Viscoplastic
     // Where the run begins points are where they are by definition.
     if (accepted.state.k == 0. || !discretization.face->layout().any(has_rest))
       return;
-    const bool is_force = discretization.scene().quantity->is_force();
     for (const bool is_held : {false, true})
       {
         const DualSolution<dim> dual =
@@ -262,8 +261,7 @@ namespace Viscoplastic
           continue;
         DistributedVector load = discretization.space.owned_vector();
         add_irreversible_load(discretization.stress_space,
-                              is_force ? accepted.state.remembered_error :
-                                         accepted.state.time_error,
+                              accepted.state.time_error,
                               load);
         estimate.settled_time += sign * (load * dual.w);
       }

@@ -66,8 +66,9 @@ namespace Viscoplastic
   ///
   ///     sum_c f'_c . e_c = (R + R_z)(w) - (R + R_z)(w'),
   ///
-  /// of the state that the step starts from. That is settled, too, and ends
-  /// with the bounds of what sticks.
+  /// of the state that the step starts from; R_z with all of D, also of forces,
+  /// since points go where it moves them. That is settled, too, and ends with
+  /// the bounds of what sticks.
   template <int dim>
   class QuantityEstimator
   {

@@ -218,15 +218,18 @@ namespace Viscoplastic
       return 1.;
     // Quantities behave like squares of the energy norm. Where contributions
     // happen to cancel, none of them may become larger. What is settled stays
-    // as it is on any mesh.
-    constexpr double safety  = QuantityEstimator<dim>::safety;
-    const double     settled = safety * std::abs(quantity.settled_space),
-                 open        = std::max(0.1 * allowed, allowed - settled),
-                 of_mesh =
-                   std::max(safety * std::abs(quantity.space_correction -
-                                              quantity.settled_space),
-                            quantity.space_of_creep) +
-                   quantity.of_boundary,
+    // as it is on any mesh; but of sums, it counts where it adds.
+    constexpr double safety = QuantityEstimator<dim>::safety;
+    const double     now =
+      std::abs(quantity.space_correction - quantity.settled_space);
+    const double settled =
+                   safety *
+                   (scene.quantity->is_sum() ?
+                      std::abs(quantity.settled_space) :
+                      std::max(0., std::abs(quantity.space_correction) - now)),
+                 open    = std::max(0.1 * allowed, allowed - settled),
+                 of_mesh = std::max(safety * now, quantity.space_of_creep) +
+                           quantity.of_boundary,
                  ratio = std::sqrt(
                    std::max(of_mesh,
                             std::min(quantity.unsigned_space, 0.9 * open)) /

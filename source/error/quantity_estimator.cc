@@ -209,6 +209,68 @@ namespace Viscoplastic
 
   template <int dim>
   void
+  QuantityEstimator<dim>::hold(BulkSolver                &solver,
+                               const EvaluatedState<dim> &accepted,
+                               const ContactState        &contact,
+                               const CoulombLaw          *law,
+                               QuantityEstimate          &estimate) const
+  {
+    const QuantityEstimate &before = accepted.errors.quantity;
+    const ContactState     &old    = accepted.state.contact;
+    const auto holds = [&](const ContactState &c, const unsigned int p) {
+      return !discretization.face->layout().points[p].is_obstacle &&
+             c.sticks[p] && c.bound[p] > 0.;
+    };
+    ContactState held     = old;
+    bool         has_rest = false;
+    double       sums[2] = {0., 0.}; // bounds of what has stuck, and still does
+    for (unsigned int p = 0; p < contact.n_points(); ++p)
+      if (holds(old, p))
+        {
+          sums[0] += old.bound[p];
+          sums[1] += holds(contact, p) ? old.bound[p] : 0.;
+        }
+      else if (holds(contact, p))
+        {
+          has_rest = held.sticks[p] = true;
+          held.bound[p]             = contact.bound[p];
+        }
+    Utilities::MPI::sum(ArrayView<const double>(sums),
+                        discretization.space.communicator,
+                        ArrayView<double>(sums));
+    const double share     = sums[0] > 0. ? sums[1] / sums[0] : 0.;
+    estimate.settled_space = share * before.settled_space;
+    estimate.settled_time  = share * before.settled_time;
+    // Where the run begins points are where they are by definition.
+    if (accepted.state.k == 0. || !discretization.face->layout().any(has_rest))
+      return;
+    for (const bool is_held : {false, true})
+      {
+        const DualSolution<dim> dual =
+          dual_problem.solve(solver, is_held ? held : old, law);
+        if (!(dual.norm > 0.))
+          continue;
+        const double         sign = (is_held ? -1. : 1.) * dual_problem.sign();
+        const Vector<double> parts =
+          space_estimator.multiply(accepted.state, accepted.forces, dual, 0.)
+            .of_both;
+        estimate.settled_space +=
+          sign * Utilities::MPI::sum(parts.mean_value() * parts.size(),
+                                     discretization.space.communicator);
+        if (!discretization.scene().has_viscosity())
+          continue;
+        DistributedVector load = discretization.space.owned_vector();
+        add_irreversible_load(discretization.stress_space,
+                              accepted.state.time_error,
+                              load);
+        estimate.settled_time += sign * (load * dual.w);
+      }
+  }
+
+
+
+  template <int dim>
+  void
   QuantityEstimator<dim>::add_slip_defects(BulkSolver              &solver,
                                            const SlipDefects       &defects,
                                            const ContactState      &contact,
@@ -266,7 +328,9 @@ namespace Viscoplastic
 
     const std::optional<CoulombLaw> law = law_of_step(accepted.state, state);
     const CoulombLaw *const         linearized = law ? &*law : nullptr;
-    const DualSolution<dim>         dual =
+    if (!is_sum && d.slipping_face())
+      hold(solver, accepted, state.contact, linearized, estimate);
+    const DualSolution<dim> dual =
       dual_problem.solve(solver, state.contact, linearized);
     // |J| <= a(w, w)^{1/2} a(u, u)^{1/2}; of a force that statics fixes w is a
     // rigid motion.
@@ -389,7 +453,11 @@ namespace Viscoplastic
     estimate.of_boundary      = boundary + geometry * estimate.dual_norm;
     estimate.space_correction = estimate.settled_space + mesh;
     estimate.time_correction  = estimate.settled_time + time;
-    estimate.space = std::max(safety * std::abs(estimate.space_correction),
+    // Signs that happen to cancel at one time do not at others.
+    const auto size_with = [&](const double settled, const double now) {
+      return std::max(std::abs(settled + now), is_sum ? 0. : std::abs(now));
+    };
+    estimate.space = std::max(safety * size_with(estimate.settled_space, mesh),
                               estimate.space_of_creep) +
                      estimate.of_boundary;
     // A part of all forces changes forces by that part, also where the dual
@@ -398,7 +466,7 @@ namespace Viscoplastic
       return std::max(energy_norm * estimate.dual_norm,
                       share * std::abs(estimate.value));
     };
-    estimate.time = std::abs(estimate.time_correction) +
+    estimate.time = size_with(estimate.settled_time, time) +
                     of_swing(errors.swing, errors.swing_share);
     // What the step has added to slip that turns, or comes to rest.
     const double bound = errors.friction * estimate.dual_norm,

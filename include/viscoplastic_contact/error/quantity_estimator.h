@@ -58,6 +58,17 @@ namespace Viscoplastic
   /// -d(rho)/rho of it where bounds change, by parts. The bounds
   /// at the ends of steps, in place of those in between, make a quadrature
   /// error -1/2 (rho_n - rho_{n-1}) |s| of known sign, settled at once.
+  ///
+  /// Points that stick keep the error e_c of where they have come to rest, and
+  /// any other quantity feels it by sum_c f_c . e_c with the force f_c that
+  /// holds w there. When they come to rest nothing jumps: with w of the points
+  /// that stuck before, and w' of these and the new ones,
+  ///
+  ///     sum_c f'_c . e_c = (R + R_z)(w) - (R + R_z)(w'),
+  ///
+  /// of the state that the step starts from; R_z with all of D, also of forces,
+  /// since points go where it moves them. That is settled, too, and ends with
+  /// the bounds of what sticks.
   template <int dim>
   class QuantityEstimator
   {
@@ -129,6 +140,15 @@ namespace Viscoplastic
     settle(const EvaluatedState<dim> &accepted,
            const ContactState        &contact,
            QuantityEstimate          &estimate) const;
+
+    /// Settle the error with which points come to rest in a step, unless the
+    /// quantity is a sum. Collective.
+    void
+    hold(BulkSolver                &solver,
+         const EvaluatedState<dim> &accepted,
+         const ContactState        &contact,
+         const CoulombLaw          *law,
+         QuantityEstimate          &estimate) const;
 
     const Discretization<dim> &discretization;
     const SpaceEstimator<dim> &space_estimator;

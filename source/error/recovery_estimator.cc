@@ -527,9 +527,10 @@ namespace Viscoplastic
 
   template <int dim>
   Vector<double>
-  RecoveryEstimator<dim>::multiply(const DistributedVector &u,
-                                   const DistributedVector &w,
-                                   const Linearization     &law) const
+  RecoveryEstimator<dim>::multiply(const DistributedVector  &u,
+                                   const IrreversibleStress &z,
+                                   const DistributedVector  &w,
+                                   const Linearization      &law) const
   {
     const unsigned int  n_samples = local.stress_space.n_samples;
     std::vector<double> products(local.cells.size());
@@ -563,6 +564,8 @@ namespace Viscoplastic
                   e - (1. - law.share) * deviator(e);
                 double product = (e - delta_u[q]) * (C * of_w[q]) -
                                  of_step * (C * delta_w[q]) / law.share;
+                if (n_samples > 1 && !z.empty())
+                  product -= z[c * n_samples + s] * delta_w[q] / law.share;
                 if (law.remainder)
                   product -=
                     law.remainder(c, s, of_step) * (C * strains[q]) / law.share;

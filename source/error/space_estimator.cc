@@ -166,7 +166,7 @@ namespace Viscoplastic
     const DualSolution<dim>                              &dual,
     const typename RecoveryEstimator<dim>::Linearization &law) const
   {
-    return recovery_estimator->multiply(state.u, dual.cartesian, law);
+    return recovery_estimator->multiply(state.u, state.z, dual.cartesian, law);
   }
 
 

@@ -82,14 +82,17 @@ namespace Viscoplastic
     /// dilatation pressures do work on what div u_h and div w_h vary by in
     /// cells, delta:
     ///
-    ///     - int e_u : C I delta_w/3 - int e_w : C I delta_u/3,
+    ///     - int (C e_u + z) : I delta_w/3 - int e_w : C I delta_u/3,
     ///
-    /// from the mixed form of displacement and pressure, which that method is.
+    /// from the mixed form of displacement and pressure, which that method is:
+    /// the body feels what the pressure of z, as of heat, varies by in a cell
+    /// (if it does: @p z may be cell means, or empty), the equations do not.
     /// Collective.
     Vector<double>
-    multiply(const DistributedVector &u,
-             const DistributedVector &w,
-             const Linearization     &law) const;
+    multiply(const DistributedVector  &u,
+             const IrreversibleStress &z,
+             const DistributedVector  &w,
+             const Linearization      &law) const;
 
   private:
     static constexpr unsigned int n_vertices = LocalCells<dim>::n_vertices,

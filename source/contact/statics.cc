@@ -17,9 +17,12 @@ namespace Viscoplastic
   {
     using Generalized = std::vector<double>;
 
-    /// What is missing to balance, relative to the loads, and relative to the
-    /// parts that they are the sum of, that counts as rounding.
-    constexpr double balance_tolerance = 1e-6, load_rounding = 1e-12;
+    /// What is missing to balance, relative to the parts that the loads are the
+    /// sum of, that counts as rounding.
+    constexpr double load_rounding = 1e-12;
+    /// Round cones, of friction in space, are taken apart step by step, which
+    /// leaves more.
+    constexpr double rounding_of_cones = 1e-6;
     /// The sine of the angle at which a motion may enter an obstacle, and what
     /// it may miss of the work of friction, relative to its own.
     constexpr double proof_tolerance = 1e-13;
@@ -246,8 +249,17 @@ namespace Viscoplastic
   Statics
   balance(const HeldBody                         &body,
           const std::vector<double>              &bounds,
-          const std::vector<std::vector<double>> &bounds_of_pressure)
+          const std::vector<std::vector<double>> &bounds_of_pressure,
+          const double                            accuracy)
   {
+    const bool has_round_cones =
+      body.face.any(std::any_of(body.face.points.begin(),
+                                body.face.points.end(),
+                                [](const ContactLayout::Point &point) {
+                                  return point.n_tangents > 1;
+                                }));
+    const double enough =
+      has_round_cones ? std::max(accuracy, rounding_of_cones) : accuracy;
     Statics result;
     result.pressures.assign(body.face.points.size(), 0.);
     const double unit = norm(body.load), size = body.load_size;
@@ -265,7 +277,7 @@ namespace Viscoplastic
     for (unsigned int n = 0; n < max_iterations; ++n)
       {
         const double left = norm(missing);
-        if (left <= balance_tolerance || left <= load_rounding * size / unit)
+        if (left <= enough || left <= load_rounding * size / unit)
           break;
         const auto   force = resistance.most_effective(missing);
         const double work  = dot(force.value, missing) / left;

@@ -235,7 +235,12 @@ namespace Viscoplastic
       bounds_of_pressure =
         discretization.face->bounds_of_pressure(problem.time_step.t,
                                                 problem.slip_rates);
-    return balance(held_body(problem), bounds, bounds_of_pressure);
+    // Bounds of pressures are no better known than the solves that these are
+    // of.
+    const double accuracy =
+      with_pressure || !discretization.face->has_computed_pressure() ? 1e-9 :
+                                                                       1e-6;
+    return balance(held_body(problem), bounds, bounds_of_pressure, accuracy);
   }
 
 

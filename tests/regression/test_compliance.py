@@ -346,6 +346,37 @@ class Refused(TestCase):
         unused = run("bar", {**bar(2, 2, 1), law: "unilateral"}, text="")
         self.assertIn(f"'{compliance}'", unused.stdout + unused.stderr)
 
+    def test_loads_beyond_the_end_of_the_ground(self):
+        """By a millionth of its length: nothing holds the body, but it came to
+        rest where rounding was its strain energy, which was negative."""
+        pillar = {
+            "Geometry/Generator": "subdivided_hyper_rectangle",
+            "Geometry/Arguments": "2, 2 : 0, 0 : 0.0758, 1 : true",
+            "Geometry/Boundary ids": "if(id == 2 && x > 0.0379, 7, id)",
+            "Geometry/Global refinements": 2,
+            "Material/Young's modulus": 1.521,
+            "Material/Poisson's ratio": 0.499,
+            **{f"Boundary {side}/Role": "free" for side in (0, 1, 7)},
+            "Boundary 2/Role": "contact",
+            "Boundary 2/Contact law": "normal compliance",
+            "Boundary 2/Compliance": 14,
+            "Boundary 2/Compliance exponent": 1.5,
+            "Boundary 2/Friction law": "coulomb",
+            "Boundary 2/Friction coefficient": 0.3,
+            "Boundary 3/Role": "traction",
+            "Initial state/Equilibrate": "true",
+            "Time/Phases": "1: 2",
+        }
+        for slope in 1e-5, 1e-6, 1e-7:
+            load = f"0; -0.02472*(1 + {slope}*(x - 0.0379)/0.0379)"
+            beyond = {**pillar, "Boundary 3/Traction": load}
+            result = run("pillar", beyond, text="", check=False)
+            self.assertRefused(result, "No contact force balances", "rotation about z")
+        # at its very end
+        result = run("pillar", {**pillar, "Boundary 3/Traction": "0; -0.02472"}, text="")
+        self.assertClose(result["contact_force_y"], -0.02472 * 0.0758, relative=1e-6)
+        self.assertGreater(result["strain_energy"].min(), 0)
+
 
 class Notes(TestCase):
     """What is said of foundations that press by almost nothing, or too much."""

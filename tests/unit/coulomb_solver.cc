@@ -347,6 +347,58 @@ TEST(CoulombSolver, TellsWherePivotsChangeTheirSign)
 
 
 
+TEST(CoulombSolver, ForceOfACornerIsShared)
+{
+  // A node is pressed onto a wall by 1, pushed along it by 0.3, and friction of
+  // a second piece, within 0.1, acts along the normal of the wall. It may take
+  // any part l of the 1; the wall is left with p = 1 - l, and friction along it
+  // with 0.3 p. All of these are solutions: the node sticks for l <= 0, and
+  // slips by 0.3 l otherwise, by 1e-12 as well as by 0.03.
+  constexpr double mu = 0.3;
+  CoulombProblem   corner;
+  Problem         &problem = corner.problem;
+  Tensor<1, 3>     across, along;
+  across[0] = 1.;
+  along[1]  = 1.;
+  problem.add_node(2, {{along}, {across}}, {across});
+  problem.A              = IdentityMatrix(2);
+  problem.u_prev         = Vector<double>(2);
+  problem.bounds         = {0., 0., 0.};
+  corner.law.given       = {0., 0.1, 0.};
+  corner.law.of_pressure = {{mu}, {0.}, {}};
+  const std::vector<double> load{1., 0.3};
+  problem.load        = Vector<double>(load.begin(), load.end());
+  const auto solution = [&](const double share) {
+    Result result{Vector<double>(2), ContactState(problem.bounds), {}};
+    result.u[1]                   = std::max(0., mu * share);
+    result.state.multiplier[0][0] = 0.3 - result.u[1];
+    result.state.multiplier[1][0] = share;
+    result.state.multiplier[2][0] = 1. - share;
+    return result;
+  };
+  for (const double share : {-0.1, -0.03, 0., 1e-12, 0.04, 0.1})
+    {
+      expect_laws(corner, solution(share), 1e-15);
+      // The solver ends with one that sticks or one that slips, as it begins.
+      DenseBulk bulk(problem, true);
+      bulk.start_at(problem.u_prev);
+      bulk.scale.rounding_error = 1e-13;
+      Vector<double> increment(2);
+      Result         found = solution(share);
+      increment[1]         = found.u[1];
+      found.state.sticks   = {share <= 0., true, true};
+      bulk.move_face(increment);
+      ContactSolver(40).solve(
+        bulk, problem.face, 1e-12, increment, found.state, &corner.law);
+      found.u = bulk.u;
+      expect_laws(corner, found, 1e-11);
+      EXPECT_EQ(found.state.sticks[0], share <= 0.);
+      EXPECT_NEAR(found.u[1], share <= 0. ? 0. : 0.02807, 1e-5);
+    }
+}
+
+
+
 TEST(CoulombSolver, BoundsItsError)
 {
   // What stops the iteration, against what a solve to rounding changes: not

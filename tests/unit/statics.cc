@@ -17,6 +17,8 @@ namespace
   using namespace Viscoplastic;
   using namespace Viscoplastic::Testing;
 
+  constexpr double accuracy = 1e-9;
+
   /// A rigid body with an obstacle and a point of friction at each node.
   struct RigidBody
   {
@@ -177,7 +179,7 @@ namespace
             }
         const HeldBody held = body.with_load(load);
         const Statics  statics =
-          balance(held, body.bounds, body.bounds_of_pressure);
+          balance(held, body.bounds, body.bounds_of_pressure, accuracy);
         if (is_made)
           {
             EXPECT_TRUE(statics.is_balanced);
@@ -227,7 +229,8 @@ namespace
       return balance(block.with_load(load),
                      std::vector<double>(block.bounds.size(), bound),
                      bound > 0. ? std::vector<std::vector<double>>() :
-                                  block.bounds_of_pressure)
+                                  block.bounds_of_pressure,
+                     accuracy)
         .is_balanced;
     };
     for (const double scale : {1e-30, 1., 1e30})
@@ -243,6 +246,10 @@ namespace
         EXPECT_FALSE(is_balanced(times({0.50001, -1., 0.}), 0.));
         EXPECT_TRUE(is_balanced(times({0.49, -1., 0.999}), 0.));
         EXPECT_FALSE(is_balanced(times({0.1, -1., 1.00001}), 0.));
+        // The resultant of the loads is beyond the end by little, or by less
+        // than they are known.
+        EXPECT_FALSE(is_balanced(times({0., -1., 1. + 1e-8}), 0.));
+        EXPECT_TRUE(is_balanced(times({0., -1., 1. + 1e-10}), 0.));
         // Friction without end does not keep it from tipping over.
         const double infinite = std::numeric_limits<double>::infinity();
         for (const double bound : {infinite, scale * 1e20})
@@ -254,10 +261,12 @@ namespace
     // What cancels leaves rounding.
     HeldBody nearly = block.with_load({0., 1e-16, 0.});
     EXPECT_FALSE(
-      balance(nearly, block.bounds, block.bounds_of_pressure).is_balanced);
+      balance(nearly, block.bounds, block.bounds_of_pressure, accuracy)
+        .is_balanced);
     nearly.load_size = 1.;
     EXPECT_TRUE(
-      balance(nearly, block.bounds, block.bounds_of_pressure).is_balanced);
+      balance(nearly, block.bounds, block.bounds_of_pressure, accuracy)
+        .is_balanced);
   }
 
 

@@ -47,7 +47,9 @@ namespace Viscoplastic
   /// dimensions as there are rigid motions decide; of the infinitely many
   /// forces of a cone of friction the one that helps most is taken into account
   /// each time. Loads that lie on the edge of what can be balanced, up to
-  /// rounding, are balanced. Collective.
+  /// @p accuracy, to which they and bounds are known relative to them, are
+  /// balanced: what is missing beyond that would turn the body without end.
+  /// Collective.
   ///
   /// @p bounds: of friction at each point, infinite where nothing can slip;
   /// what is said of obstacles does not count. @p bounds_of_pressure: what a
@@ -56,7 +58,8 @@ namespace Viscoplastic
   Statics
   balance(const HeldBody                         &body,
           const std::vector<double>              &bounds,
-          const std::vector<std::vector<double>> &bounds_of_pressure);
+          const std::vector<std::vector<double>> &bounds_of_pressure,
+          const double                            accuracy);
 
 
   /// The rigid motion, in the basis of the body, by which a body in the state

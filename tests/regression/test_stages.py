@@ -64,21 +64,23 @@ def column(overrides, ranks=1):
     return run("excavated_column", overrides, ranks)
 
 
+def check_points(test, whole, alone):
+    """They end at the same places."""
+    for name in ("point0", "point1"):
+        expected = alone.vector(name)[-1]
+        test.assertClose(
+            whole.vector(name)[-1],
+            expected,
+            absolute=ABSENT * abs(expected).max(),
+            what=name,
+        )
+
+
 class Removed(TestCase):
     """What is left is as if it had always been alone."""
 
-    def check_points(self, whole, alone):
-        for name in ("point0", "point1"):
-            expected = alone.vector(name)[-1]
-            self.assertClose(
-                whole.vector(name)[-1],
-                expected,
-                absolute=ABSENT * abs(expected).max(),
-                what=name,
-            )
-
     def compare(self, whole, alone):
-        self.check_points(whole, alone)
+        check_points(self, whole, alone)
         for name in ("stored_energy", "max_von_mises", "estimate_space"):
             self.assertClose(whole[name][-1], alone[name][-1], ABSENT, what=name)
         self.assertClose(whole["load_y"][0], 2 * whole["load_y"][-1], ROUNDING)
@@ -162,7 +164,7 @@ class Beside(TestCase):
         for ranks in (1, 2):
             whole = column({**held, **HANGING}, ranks)
             alone = column({**ALONE, **HANGING})
-            self.check_points(whole, alone)
+            check_points(self, whole, alone)
             # of a weight of 2
             self.assertClose(whole.vector("reaction_7")[-1], 0, absolute=2 * ABSENT)
 

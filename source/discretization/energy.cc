@@ -128,7 +128,7 @@ namespace Viscoplastic
                now                 = laws.at(state.t, state.history);
     StressSummary<dim> result;
     LargestPlace<dim>  largest_mises;
-    double             volume = 0.;
+    double             volume = 0., strains = 0.;
     for (std::size_t c = 0; c < stress_space.n_cells(); ++c)
       {
         const auto &cell = stress_space.space.cells[c];
@@ -143,8 +143,10 @@ namespace Viscoplastic
         const double mises = std::sqrt(1.5) * stable_norm(deviator(mean));
         if (largest_mises.may_take(mises))
           largest_mises.add(mises, cell->center());
-        result.max_strain =
-          std::max(result.max_strain, energies.mean_strain.norm());
+        const double strain = energies.mean_strain.norm(),
+                     weight = strain * strain * stress_space.volume(c);
+        strains += weight;
+        result.mean_strain += weight * strain;
         result.mean_von_mises += mises * stress_space.volume(c);
         result.stress_norm += (mean * mean) * stress_space.volume(c);
         volume += stress_space.volume(c);
@@ -156,17 +158,19 @@ namespace Viscoplastic
                              result.irreversible_energy,
                              result.viscous_dissipation,
                              volume,
-                             result.thermal_work};
+                             result.thermal_work,
+                             strains,
+                             result.mean_strain};
     Utilities::MPI::sum(sums, comm, sums);
     largest_mises.reduce(comm);
     result.max_von_mises       = largest_mises.value();
     result.von_mises_position  = largest_mises.position();
-    result.max_strain          = Utilities::MPI::max(result.max_strain, comm);
     result.mean_von_mises      = sums[0] / sums[4];
     result.stress_norm         = std::sqrt(sums[1]);
     result.irreversible_energy = sums[2];
     result.viscous_dissipation = sums[3];
     result.thermal_work        = sums[5];
+    result.mean_strain         = sums[6] > 0. ? sums[7] / sums[6] : 0.;
     return result;
   }
 

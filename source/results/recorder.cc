@@ -141,7 +141,7 @@ namespace Viscoplastic
     run.computed_bounds += step.end.state.k * quantities.friction_bounds.sum;
     if (run.displacement.update(quantities.max_displacement, t))
       run.displacement_position = quantities.displacement_position;
-    run.strain.update(stress.max_strain, t);
+    run.strain.update(stress.mean_strain, t);
     if (run.von_mises.update(stress.max_von_mises, t))
       run.von_mises_position = stress.von_mises_position;
     run.pressure.update(quantities.contact.max_pressure, t);

@@ -338,7 +338,7 @@ namespace Viscoplastic
                << " times the size of the body";
         else
           text << " the norm of the strain is " << run.strain.value
-               << " in the mean of a cell";
+               << " in the mean of what is deformed";
         if (run.strain.value > 1. && run.displacement.value < 0.05 * size)
           text << ", although displacements are small: a point alone carries "
                   "force, as where a symmetry ends, and strains there grow as "

@@ -226,7 +226,7 @@ namespace Viscoplastic
             print_row(out,
                       "error of " + name,
                       number(value) + " (" + number(100. * value / norm) +
-                        " % of the exact solution)");
+                        " % of it)");
         };
       const SolutionNorms &errors = run.largest_error,
                           &exact  = run.largest_exact;

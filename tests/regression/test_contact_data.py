@@ -647,7 +647,7 @@ class Tension(TestCase):
         )
         self.assertRegex(
             through.stdout,
-            r"Note: at t = 1 the norm of the strain is [0-9.]+ in the mean of a cell; small strains",
+            r"Note: at t = 1 the norm of the strain is [0-9.]+ in the mean of what is deformed; small strains",
         )
         # With units it is a body, and strains of a tenth are not small.
         deep = {**self.SCENE, "Boundary 3/Displacement": "0; -0.2*t"}

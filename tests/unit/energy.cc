@@ -103,7 +103,7 @@ namespace
           EXPECT_NEAR(summary.max_von_mises, mises, 1e-13);
           EXPECT_NEAR(summary.mean_von_mises, mises, 1e-13);
           // eps = 0.4 (1, 1/2; 1/2, -1/2)
-          EXPECT_NEAR(summary.max_strain, 0.4 * std::sqrt(1.75), 1e-13);
+          EXPECT_NEAR(summary.mean_strain, 0.4 * std::sqrt(1.75), 1e-13);
           EXPECT_NEAR(summary.stress_norm,
                       s * std::sqrt(volume * (0.09 + 0.04 + 0.49 + 2. * 0.25)),
                       1e-13);

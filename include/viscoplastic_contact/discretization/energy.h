@@ -15,8 +15,10 @@ namespace Viscoplastic
     double max_von_mises = 0., mean_von_mises = 0.;
     /// The center of the cell with the largest one.
     Point<dim> von_mises_position;
-    /// The largest (eps : eps)^(1/2) of cell means.
-    double max_strain = 0.;
+    /// int |eps|^3 / int |eps|^2 of cell means, |eps| = (eps : eps)^(1/2): the
+    /// mean strain, weighted as elastic energy is. It is that of the part that
+    /// deforms, however small, and converges also where strains are singular.
+    double mean_strain = 0.;
     /// (int sigma : sigma)^(1/2) of cell means.
     double stress_norm = 0.;
     /// 1/2 int E^-1 z : z, and what laws with an energy of their own store

@@ -347,7 +347,9 @@ class EffectsStudy:
             runs = self.runs_of(variant, level)
             seconds = here.record.number("seconds_total")
             limit = max(LEAST_LIMIT, MOST_TIMES * seconds)
-            attempt = self.compute(runs, level, seconds, limit)
+            rest = max(LEAST_LIMIT, self.start + self.scene.budget - time.monotonic())
+            attempt = self.compute(runs, level, seconds, min(limit, rest))
+            attempt.is_too_long |= attempt.is_too_slow and rest < limit
         except Interrupted:
             raise
         except UserError as error:  # what is wrong with its entries
@@ -436,12 +438,14 @@ class EffectsStudy:
                     variants = self.judge_on(level - 1, variants)
                 break
             if not variants:
+                # What belongs to the problem first, for the budget may end.
                 table = self.of_scene[level].table
                 variants = effect_variants(
                     self.scene,
                     largest_of(table, "mean_von_mises"),
                     contact_force_of(table),
                 )
+                variants.sort(key=lambda variant: KINDS.index(variant.kind))
                 self.console.say(
                     f"Effects of {self.scene.file}: {len(variants)} simplifications"
                 )

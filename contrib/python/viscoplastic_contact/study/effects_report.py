@@ -116,9 +116,11 @@ def print_cells(cells):
 
 def print_row(result, names):
     tells, decisive = has_changes(result), result.decisive
+    # Of fewer cells than the scene has.
+    mesh = f" ({result.cells:.0f} cells)" if result.level < 0 and result.cells else ""
     return print_cells(
         [
-            f"{result.variant.effect}: {result.variant.instead}",
+            f"{result.variant.effect}: {result.variant.instead}{mesh}",
             IN_SHORT.get(result.verdict, result.verdict),
             in_words(decisive.quantity, names) if tells else "",
             percent(decisive.change) if tells else "",

@@ -450,18 +450,5 @@ class TestCase(unittest.TestCase):
         )
 
 
-class WithoutRanks(unittest.TestLoader):
-    """Leaves out the tests that have ranks in their names."""
-
-    def getTestCaseNames(self, case):
-        return [name for name in super().getTestCaseNames(case) if "rank" not in name]
-
-
 def main():
-    """Those of unittest; `--on-one-rank' leaves out the tests that have ranks in their
-    names, as `-k rank' leaves out the others."""
-    loader = unittest.defaultTestLoader
-    if "--on-one-rank" in sys.argv:
-        sys.argv.remove("--on-one-rank")
-        loader = WithoutRanks()
-    unittest.main(verbosity=2, testLoader=loader)
+    unittest.main(verbosity=2)

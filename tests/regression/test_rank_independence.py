@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""One to four MPI ranks give the same active sets and the same numbers.
+"""One rank and several (two to four) give the same active sets and the same numbers.
 
 Every scene of prm/ is here, shortened. One rank has the direct solver wherever
 `automatic' chooses it, several have multigrid. A scene that is added to prm/ and

@@ -13,6 +13,7 @@ KEEP_RESULTS to a directory to keep them.
 
 import atexit
 import csv
+import functools
 import json
 import os
 import re
@@ -248,6 +249,20 @@ def study_command(*arguments):
     return [sys.executable, "-m", "viscoplastic_contact.study", *map(str, arguments)]
 
 
+@functools.cache
+def started_program():
+    """What the environment of those needs that start the program again and again, of
+    which most starts take longer than the run: one that has started, if there is a
+    server."""
+    if not SERVER:
+        return {"VISCOPLASTIC_CONTACT": str(EXECUTABLE)}
+    one = program_server.SocketServer(
+        SERVER, EXECUTABLE, {**os.environ, "OMP_NUM_THREADS": "1"}
+    )
+    atexit.register(one.close)
+    return one.environment
+
+
 def study_environment():
     """What contrib/study gives to its runs, for tests on few cores."""
     return {
@@ -255,7 +270,7 @@ def study_environment():
         "OMP_NUM_THREADS": "1",
         "PYTHONPATH": str(SOURCE / "contrib" / "python"),
         "PYTHONDONTWRITEBYTECODE": "1",
-        "VISCOPLASTIC_CONTACT": str(EXECUTABLE),
+        **started_program(),
         "OMPI_ALLOW_RUN_AS_ROOT": "1",
         "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1",
         "OMPI_MCA_rmaps_base_oversubscribe": "1",
@@ -435,18 +450,5 @@ class TestCase(unittest.TestCase):
         )
 
 
-class WithoutRanks(unittest.TestLoader):
-    """Leaves out the tests that have ranks in their names."""
-
-    def getTestCaseNames(self, case):
-        return [name for name in super().getTestCaseNames(case) if "rank" not in name]
-
-
 def main():
-    """Those of unittest; `--on-one-rank' leaves out the tests that have ranks in their
-    names, as `-k rank' leaves out the others."""
-    loader = unittest.defaultTestLoader
-    if "--on-one-rank" in sys.argv:
-        sys.argv.remove("--on-one-rank")
-        loader = WithoutRanks()
-    unittest.main(verbosity=2, testLoader=loader)
+    unittest.main(verbosity=2)

@@ -176,6 +176,15 @@ def manufactured(name, law=None, **overrides):
     return run(name, {"Output/Fields every": 0, **overrides}, text=text)
 
 
+def boundaries(*roles):
+    """Entries of the boundaries 0, 1, ..., each a role or a dictionary."""
+    return {
+        f"Boundary {i}/{name}": value
+        for i, role in enumerate(roles)
+        for name, value in ({"Role": role} if isinstance(role, str) else role).items()
+    }
+
+
 def entries(boundaries, values):
     """The same entries of several boundaries."""
     return {

@@ -11,7 +11,6 @@ import csv
 import json
 
 MODEL = {"C_h": 0.3, "p": 1.0, "C_k": 0.2, "q": 1.0}
-SECOND_ORDER = {"C_h": 0.3, "p": 1.0, "C_k": 0.4, "q": 2.0}
 PRICE = {"c": 2e-6, "a": 1.15}
 PHASES = {  # parts of the total; the rest nobody measured
     "set_up": 0.1,

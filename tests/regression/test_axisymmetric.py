@@ -9,17 +9,9 @@ import numpy as np
 from scipy.integrate import solve_ivp
 
 from harness import TestCase, main, run
+from runs import boundaries
 
 RING = {"Dimension": 2, "Geometry/Plane model": "axisymmetric"}
-
-
-def boundaries(*roles):
-    """Entries of the boundaries 0, 1, ..., each a role or a dictionary."""
-    return {
-        f"Boundary {i}/{name}": value
-        for i, role in enumerate(roles)
-        for name, value in ({"Role": role} if isinstance(role, str) else role).items()
-    }
 
 
 def box(cells, corners, *roles, **more):

@@ -114,7 +114,10 @@ class Variants(TestCase):
 
     @classmethod
     def setUpClass(cls):
-        cls.program = Program(EXECUTABLE)
+        environment = study_environment()
+        cls.program = Program(
+            environment["VISCOPLASTIC_CONTACT"], environment=environment
+        )
 
     def of(self, text, kind=PROBLEM, force=""):
         with tempfile.TemporaryDirectory() as work:

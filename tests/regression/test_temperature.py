@@ -9,19 +9,10 @@ import tempfile
 import numpy as np
 
 from harness import TestCase, main, run
-from runs import EVERY_STEP, Job, without_wall_times
+from runs import EVERY_STEP, Job, boundaries, without_wall_times
 
 E, NU, ALPHA = 200.0, 0.3, 1e-3
 AXIS = {"Geometry/Plane model": "axisymmetric"}
-
-
-def boundaries(*roles):
-    """Entries of the boundaries 0, 1, ..., each a role or a dictionary."""
-    return {
-        f"Boundary {i}/{name}": value
-        for i, role in enumerate(roles)
-        for name, value in ({"Role": role} if isinstance(role, str) else role).items()
-    }
 
 
 def body(temperature, arguments, *roles, **more):

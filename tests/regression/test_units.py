@@ -559,6 +559,7 @@ LEFT_OUT = {
     "hard/drawn_slab_3d": "as drawn, with a column that is never finite",
     "hard/drawn_strip_2d": "two steps are longer than the stability limit",
     "hard/incompressible": "exact solution",
+    "hard/large_*": "slab and pad, in more cells",
     "hard/slivers": "exact solution",
     "tilted_plane_2d": "exact solution",
     "hard/anisotropic": "--describe gives the Voigt matrix and the moduli",

@@ -7,6 +7,8 @@ the other on several ranks.
 """
 
 import subprocess
+import tempfile
+from pathlib import Path
 
 
 class Server:
@@ -46,3 +48,31 @@ class Server:
         self.process.stdin.close()
         self.process.wait()
         self.process.stdout.close()
+
+
+class SocketServer:
+    """One that the program `client' beside this file asks, for those that start the
+    program themselves: environment is what they need."""
+
+    def __init__(self, executable, program, environment):
+        self.folder = tempfile.TemporaryDirectory()
+        socket = str(Path(self.folder.name) / "socket")
+        self.process = subprocess.Popen(
+            [executable, "0", "0", "0", socket],
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            env=environment,
+        )
+        if self.process.stdout.readline() != b"ready\n":
+            raise RuntimeError(f"{executable} does not start")
+        self.environment = {
+            "VISCOPLASTIC_CONTACT": str(Path(__file__).with_name("client")),
+            "VISCOPLASTIC_CONTACT_PROGRAM": str(program),
+            "VISCOPLASTIC_CONTACT_SOCKET": socket,
+        }
+
+    def close(self):
+        self.process.stdin.close()
+        self.process.wait()
+        self.process.stdout.close()
+        self.folder.cleanup()

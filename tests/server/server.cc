@@ -3,7 +3,9 @@
 // The program for tests with many runs: started once. A line `directory
 // argument ...' on standard input asks for a run there, with its output in the
 // files stdout and stderr. The answer is a line with its exit code, or minus
-// the number of the signal that ended it.
+// the number of the signal that ended it. With the path of a socket as a fourth
+// argument, the program `client' asks for runs there, in the place of the real
+// one.
 //
 // A single process forks for each run. Several ranks that mpirun has started
 // cannot: they run one scene after the other, and a rank that fails alone ends
@@ -14,11 +16,16 @@
 #include <viscoplastic_contact/base/mpi_singleton.h>
 
 #include <fcntl.h>
+#include <poll.h>
 #include <sys/resource.h>
+#include <sys/socket.h>
+#include <sys/un.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <chrono>
+#include <csignal>
+#include <cstring>
 #include <iostream>
 #include <sstream>
 #include <string>
@@ -87,6 +94,23 @@ namespace
 
 
 
+  /// The exit code of a run with these arguments in the present directory.
+  int
+  run(std::vector<std::string> arguments)
+  {
+    arguments.insert(arguments.begin(), "viscoplastic_contact");
+    std::vector<char *> pointers;
+    for (std::string &argument : arguments)
+      pointers.push_back(argument.data());
+    pointers.push_back(nullptr);
+    const int code =
+      main_of_program(static_cast<int>(arguments.size()), pointers.data());
+    std::cout << std::flush;
+    return code;
+  }
+
+
+
   /// The exit code of the run that a line asks for. All its ranks write to the
   /// same files.
   int
@@ -94,24 +118,16 @@ namespace
   {
     std::istringstream       words(request);
     std::string              directory, word;
-    std::vector<std::string> arguments{"viscoplastic_contact"};
+    std::vector<std::string> arguments;
     words >> directory;
     while (words >> word)
       arguments.push_back(word);
-    std::vector<char *> pointers;
-    for (std::string &argument : arguments)
-      pointers.push_back(argument.data());
-    pointers.push_back(nullptr);
-
     if (chdir(directory.c_str()) != 0)
       return 127;
     redirect("/dev/null", STDIN_FILENO, O_RDONLY);
     redirect("stdout", STDOUT_FILENO, O_WRONLY | O_CREAT | O_APPEND);
     redirect("stderr", STDERR_FILENO, O_WRONLY | O_CREAT | O_APPEND);
-    const int code =
-      main_of_program(static_cast<int>(arguments.size()), pointers.data());
-    std::cout << std::flush;
-    return code;
+    return run(arguments);
   }
 
 
@@ -134,6 +150,92 @@ namespace
         std::cout << (WIFSIGNALED(status) ? -WTERMSIG(status) :
                                             WEXITSTATUS(status))
                   << std::endl;
+      }
+  }
+
+
+
+  /// The run that a client asks for: a message with directory and arguments,
+  /// each ended by a zero, and its standard streams. Answers are the number of
+  /// the process, to which the client sends its signals on, and its status in
+  /// the end. The run ends with the client.
+  void
+  serve_client(const int client)
+  {
+    int                      streams[3];
+    std::vector<char>        text(1 << 18);
+    alignas(cmsghdr) char    control[CMSG_SPACE(sizeof(streams))];
+    iovec                    part{text.data(), text.size()};
+    msghdr                   message{};
+    std::vector<std::string> words;
+    message.msg_iov        = &part;
+    message.msg_iovlen     = 1;
+    message.msg_control    = control;
+    message.msg_controllen = sizeof(control);
+    const ssize_t length   = recvmsg(client, &message, MSG_CMSG_CLOEXEC);
+    if (length <= 0 || message.msg_controllen < sizeof(control))
+      return;
+    std::memcpy(streams, CMSG_DATA(CMSG_FIRSTHDR(&message)), sizeof(streams));
+    for (const char *word = text.data(); word < text.data() + length;
+         word += words.back().size() + 1)
+      words.emplace_back(word);
+
+    int alive[2]; // a pipe that the end of the run closes
+    if (pipe2(alive, O_CLOEXEC) != 0)
+      return;
+    const pid_t child = fork();
+    if (child == 0)
+      {
+        for (int i = 0; i < 3; ++i)
+          dup2(streams[i], i);
+        _exit(chdir(words.front().c_str()) == 0 ?
+                run({words.begin() + 1, words.end()}) :
+                127);
+      }
+    close(alive[1]);
+    for (int i = 0; i < 3; ++i)
+      {
+        close(streams[i]);
+        close(i);
+      }
+    send(client, &child, sizeof(child), MSG_NOSIGNAL);
+    pollfd ends[] = {{client, POLLIN, 0}, {alive[0], 0, 0}};
+    poll(ends, 2, -1);
+    if (ends[0].revents != 0)
+      kill(child, SIGKILL);
+    int status = 0;
+    waitpid(child, &status, 0);
+    send(client, &status, sizeof(status), MSG_NOSIGNAL);
+  }
+
+
+
+  /// Until standard input ends, which takes whoever has started this.
+  void
+  serve_at_socket(const char *path)
+  {
+    const int   listener = socket(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0);
+    sockaddr_un address{};
+    address.sun_family = AF_UNIX;
+    std::strncpy(address.sun_path, path, sizeof(address.sun_path) - 1);
+    if (bind(listener,
+             reinterpret_cast<const sockaddr *>(&address),
+             sizeof(address)) != 0 ||
+        listen(listener, 16) != 0)
+      return;
+    std::cout << "ready" << std::endl;
+    std::signal(SIGCHLD, SIG_IGN); // nobody waits for them
+    pollfd inputs[] = {{listener, POLLIN, 0}, {STDIN_FILENO, POLLIN, 0}};
+    while (poll(inputs, 2, -1) > 0 && inputs[1].revents == 0)
+      {
+        const int client = accept4(listener, nullptr, nullptr, SOCK_CLOEXEC);
+        if (fork() == 0)
+          {
+            std::signal(SIGCHLD, SIG_DFL);
+            serve_client(client);
+            _exit(0);
+          }
+        close(client);
       }
   }
 
@@ -188,11 +290,12 @@ namespace
 
 
 
-/// Arguments: the limits of a run in a fork, in the order of Limits.
+/// Arguments: the limits of a run in a fork, in the order of Limits, and the
+/// path of a socket, where there are no limits.
 int
 main(int argc, char *argv[])
 {
-  if (argc != 4)
+  if (argc != 4 && argc != 5)
     return 2;
   const Limits limits{std::stoul(argv[1]),
                       static_cast<unsigned int>(std::stoul(argv[2])),
@@ -200,7 +303,9 @@ main(int argc, char *argv[])
   int          n_hidden_arguments = 1;
   const bool   is_single          = Viscoplastic::run_without_mpi_job();
   dealii::Utilities::MPI::MPI_InitFinalize mpi(n_hidden_arguments, argv, 1);
-  if (is_single)
+  if (argc == 5)
+    serve_at_socket(argv[4]);
+  else if (is_single)
     serve_by_forks(limits);
   else
     serve_by_ranks();

@@ -13,8 +13,8 @@ namespace Viscoplastic
 {
   using namespace dealii;
 
-  /// Where a run speaks: the standard output of rank 0, and a log file on
-  /// request.
+  /// The output stream of a run: standard output of rank 0 and, if asked for, a
+  /// log file.
   class Console
   {
   public:

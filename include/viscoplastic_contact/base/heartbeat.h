@@ -7,7 +7,8 @@
 
 namespace Viscoplastic
 {
-  /// What a step is solved by: each contains loops of the next.
+  /// The nested iterations that solve a time step, from the outermost to the
+  /// innermost.
   enum class Loop
   {
     newton,

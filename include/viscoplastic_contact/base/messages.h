@@ -10,14 +10,14 @@
 
 namespace Viscoplastic
 {
-  /// What an exception says to the user as one line, without the place in the
-  /// code where it was thrown.
+  /// The message of an exception for the user, as one line, without the place
+  /// in the code where it was thrown.
   std::string
   reason(const std::exception &exception);
 
 
-  /// The same of the exception that is being handled, whatever its type: laws
-  /// of shared libraries may throw anything. For a `catch (...)'.
+  /// The message of the exception that is being handled, of whatever type: laws
+  /// of shared libraries may throw anything. For use in `catch (...)'.
   std::string
   reason_of_current_exception();
 

@@ -95,7 +95,7 @@ namespace Viscoplastic
     /// scenes with friction.
     std::optional<unsigned int> contact_iterations = {};
     std::optional<double>       slipping           = {};
-    /// How fast that slips at most, with its unit.
+    /// The largest slip rate, as text with its unit.
     std::string slip_rate = {};
     /// The estimate by which an adaptive scene without error estimate refines.
     std::optional<double> error_estimate = {};

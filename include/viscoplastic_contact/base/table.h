@@ -19,7 +19,7 @@ namespace Viscoplastic
       constant
     };
 
-    /// What the columns are before the first row and after the last one.
+    /// How a table extrapolates before its first row and after its last one.
     enum class Outside
     {
       refuse,  // not there

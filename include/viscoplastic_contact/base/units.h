@@ -35,7 +35,7 @@ namespace Viscoplastic
   {
     std::string name;
     Dimension   dimension;
-    /// How many units of the SI it is.
+    /// The size of the unit in SI units.
     double si = 1.;
   };
 
@@ -46,11 +46,11 @@ namespace Viscoplastic
 
 
 
-  /// What read_unit() has found.
+  /// The result of read_unit().
   struct UnitInText
   {
     Unit unit;
-    /// Where the text goes on behind it.
+    /// Position in the text behind the unit.
     std::size_t end;
     /// A name in it that is no unit; the others mean nothing then.
     std::string unknown_name;
@@ -66,7 +66,8 @@ namespace Viscoplastic
 
 
 
-  /// What the numbers of results are.
+  /// The physical quantities of numbers in results, from which their units
+  /// follow.
   enum class Quantity
   {
     pure_number,
@@ -114,7 +115,7 @@ namespace Viscoplastic
       return length.si > 0.;
     }
 
-    /// How many units of the SI the unit of this dimension is.
+    /// The size in SI units of the scene's unit of this @p dimension.
     double
     si(const Dimension &dimension) const;
 

@@ -49,15 +49,15 @@ namespace Viscoplastic
               const FaceTruncation   *truncation,
               const Vector<double>   &squared_estimate);
 
-  /// What pack_mesh() and pack_fields() have returned on some ranks, or all of
-  /// them, and what there was to pack.
+  /// The packed mesh and fields (pack_mesh(), pack_fields()) of some or all
+  /// ranks, and which optional fields they contain.
   struct PackedFields
   {
     std::vector<std::string> meshes, fields;
-    /// Which of the nodal_fields() there are.
+    /// Whether each of the nodal_fields() is contained.
     std::array<bool, 4> has_nodal_field;
     bool                has_estimate;
-    /// Which of the sample_fields() there are.
+    /// Whether each of the sample_fields() is contained.
     std::array<bool, 7> has_sample_field;
   };
 

@@ -8,7 +8,8 @@
 
 namespace Viscoplastic
 {
-  /// What a checkpoint says of itself.
+  /// The description of a checkpoint in its directory: program, scene, step and
+  /// files.
   struct CheckpointManifest
   {
     /// Number and time of the step at whose end it was written.
@@ -37,7 +38,7 @@ namespace Viscoplastic
     of_text(const std::string &text);
   };
 
-  /// What the text of a manifest begins with, whatever the version.
+  /// The first words of the text of every manifest, in all versions.
   extern const std::string first_words_of_manifests;
 
   std::uint32_t

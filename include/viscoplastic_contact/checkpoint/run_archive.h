@@ -16,7 +16,8 @@
 
 namespace Viscoplastic
 {
-  /// Where a run that is made in passes is, see run_in_passes().
+  /// The position of a run that repeats its time interval in passes, see
+  /// run_in_passes().
   struct PassState
   {
     bool follows_another = false, has_changed_mesh = false;
@@ -24,8 +25,8 @@ namespace Viscoplastic
 
 
 
-  /// What a run knows between two steps beside its mesh: all that a restart
-  /// has to bring back.
+  /// The complete state of a run between two steps, except for its mesh: all
+  /// that a restart restores.
   template <int dim>
   struct RunState
   {
@@ -37,7 +38,8 @@ namespace Viscoplastic
     Recorder<dim>       &recorder;
   };
 
-  /// What has become of the parameters since a checkpoint.
+  /// The differences between the parameters of a run and those in its
+  /// checkpoint.
   struct ParameterChanges
   {
     /// "'Time/Phases' is 2: 20 (was 1: 10)", those that a run may go on with
@@ -53,8 +55,8 @@ namespace Viscoplastic
                     const ParameterChanges   &changes,
                     Console                  &console);
 
-  /// What a checkpoint is written from: its manifest, and the files of this
-  /// rank by name.
+  /// The contents of a checkpoint: its manifest, and the files of this rank by
+  /// name.
   struct PackedRun
   {
     CheckpointManifest                 manifest;
@@ -90,7 +92,7 @@ namespace Viscoplastic
     std::optional<PreconditionerState>
     read_fields(const Discretization<dim> &discretization);
 
-    /// What the user has changed since.
+    /// Parameters that the user has changed since the checkpoint was written.
     const ParameterChanges changes;
     std::vector<double>    output_times;
     double                 earlier_seconds = 0.;

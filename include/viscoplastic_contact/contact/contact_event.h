@@ -22,8 +22,8 @@ namespace Viscoplastic
                     const ContactState  &state,
                     const bool           from_kink);
 
-  /// What a step has wrong of the slip of points that slip in it and in the one
-  /// before.
+  /// The two errors that a time step makes in the slip of points that slip in
+  /// it and in the step before.
   struct SlipDefects
   {
     /// sum of |lambda| |s| (1 - cos theta), with theta the angle between the

@@ -13,8 +13,8 @@
 
 namespace Viscoplastic
 {
-  /// One solve of ContactSolver, which explains the method: what it works on,
-  /// and the phases of its iterations.
+  /// The iteration of one call of ContactSolver::solve(): its data and the four
+  /// phases of the method, which is explained there.
   class ContactIteration
   {
   public:
@@ -29,7 +29,8 @@ namespace Viscoplastic
     ContactReport
     solve(const unsigned int max_iterations);
 
-    /// All of it but what completes the displacement.
+    /// Iterate to the tolerance, as solve() does, but leave out
+    /// ContactSolve::finish().
     void
     iterate(const unsigned int max_iterations);
 
@@ -60,8 +61,9 @@ namespace Viscoplastic
     bool
     is_rounding(const Certificate &certificate);
 
-    /// The bound on the error that a dual norm of the residual means, for the
-    /// report.
+    /// The bound on the error in the energy norm that follows from @p
+    /// dual_norm, that of the residual, and the complementarity defect of @p
+    /// certificate.
     double
     bound(const double dual_norm, const Certificate &certificate);
 

@@ -34,9 +34,10 @@ namespace Viscoplastic
       /// slip_i = map[i] . x over the face components of the node. Of an
       /// obstacle: how far the node moves along the foundation's normal.
       std::array<Tensor<1, 3>, 2> map;
-      /// Whether this is u_n <= g, not friction.
+      /// Whether the point is an obstacle (the unilateral condition u_n <= g)
+      /// instead of a point of friction.
       bool is_obstacle = false;
-      /// Of an obstacle: whether and how it gives way.
+      /// The normal compliance of an obstacle; rigid if it has no pieces.
       NormalCompliance compliance;
 
       bool
@@ -149,7 +150,8 @@ namespace Viscoplastic
   Tensor<1, 3>
   node_force(const ContactLayout::Point &point, const Tensor<1, 2> &multiplier);
 
-  /// The multiplier whose node force is the nearest to @p force.
+  /// The multiplier whose node force is the nearest to @p force in the
+  /// Euclidean norm (least squares).
   Tensor<1, 2>
   nearest_multiplier(const ContactLayout::Point &point,
                      const Tensor<1, 3>         &force);
@@ -178,8 +180,8 @@ namespace Viscoplastic
     /// The bound rho_c >= 0; infinite for glued points. Of an obstacle the
     /// distance d_c that is left at the beginning of the step.
     std::vector<double> bound;
-    /// How far w_c the foundation of the point moves in the step, along the
-    /// directions of its slip; of an obstacle zero.
+    /// The increment w_c of the displacement of the foundation in the step,
+    /// along the slip directions of the point; zero for obstacles.
     std::vector<Tensor<1, 2>> foundation_step;
     /// The slip s_c: the tangential increment of the displacement relative to
     /// the foundation; of an obstacle the normal one.
@@ -251,9 +253,10 @@ namespace Viscoplastic
   struct FaceTruncation
   {
     std::vector<Tensor<2, 3>> projector, spring;
-    /// What each node's equations are multiplied by before they are projected,
-    /// where friction follows the pressure of the same system (CoulombLaw);
-    /// empty where none does. The system is not symmetric then.
+    /// The 3x3 matrix of each node by which its equations are multiplied before
+    /// they are projected, where friction bounds depend on the pressure of the
+    /// same system (see CoulombLaw::tilt()): the system is not symmetric then.
+    /// Empty where no bound does.
     std::vector<Tensor<2, 3>> tilt;
     /// Whether the transposed system is meant: motions are multiplied by the
     /// transposed tilts then, and equations are not.

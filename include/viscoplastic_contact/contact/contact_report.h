@@ -8,7 +8,7 @@
 
 namespace Viscoplastic
 {
-  /// How a solve with contact went.
+  /// Iteration counts, error bounds and times of a solve with contact.
   struct ContactReport
   {
     /// Corrections of the active set iteration.
@@ -21,17 +21,19 @@ namespace Viscoplastic
     /// change of its own bounds.
     unsigned int bound_iterations = 0;
     double       contraction      = 0.;
-    /// What makes it doubtful that the solution is the only one; empty where
-    /// nothing does.
+    /// A sentence on why the solution may not be unique; empty if nothing
+    /// suggests that.
     std::string doubt;
     /// Primal minus dual energy, a bound on half the squared energy error.
     double duality_gap = 0.;
     /// The bound on the energy error that follows from the duality gap, over
     /// the energy norm of the solution.
     double relative_error = 0.;
-    /// The same bound, absolute; without contact that of the linear solver.
+    /// Bound on the error in the energy norm, absolute; without contact, the
+    /// one that the linear solver reports.
     double error = 0.;
-    /// What rounding leaves of the error, see SolutionScale.
+    /// The part of the error that rounding causes
+    /// (SolutionScale::rounding_error).
     double rounding_error = 0.;
     /// The relative tolerance of the solve; zero where nothing was solved.
     double tolerance = 0.;
@@ -56,7 +58,7 @@ namespace Viscoplastic
 
 
 
-  /// On all ranks: the iteration with Coulomb's law has not converged.
+  /// Thrown on all ranks if the iteration with Coulomb's law does not converge.
   class NoCoulombSolution : public StandardExceptions::ExcMessage
   {
     using StandardExceptions::ExcMessage::ExcMessage;

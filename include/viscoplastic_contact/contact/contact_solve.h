@@ -8,8 +8,8 @@
 
 namespace Viscoplastic
 {
-  /// What is known of the size of a solution, in the energy norm, before it is
-  /// solved for.
+  /// Sizes in the energy norm that are known before a solve: its rounding
+  /// error, and the norm of the last solution.
   struct SolutionScale
   {
     /// An error that rounding leaves in any case, and that counts as none: of
@@ -49,7 +49,7 @@ namespace Viscoplastic
     virtual ~ContactSolve() = default;
 
     const bool is_exact;
-    /// Rounding may turn out to make more.
+    /// Not constant: the rounding error grows if solves find it to be larger.
     SolutionScale scale;
 
     /// The matrix for Gauss-Seidel sweeps whose effect move_face() has.
@@ -67,8 +67,9 @@ namespace Viscoplastic
     virtual void
     move_face(const Vector<double> &change) = 0;
 
-    /// How the calls below treat the face. A truncation that is only tried
-    /// must not be what a solver adapts its set-up to.
+    /// Set which points stick or slip in the calls below. Without @p
+    /// may_rebuild the truncation is only tried, and a solver keeps its
+    /// preconditioner.
     virtual void
     set_truncation(const FaceTruncation &truncation,
                    const bool            may_rebuild = true) = 0;
@@ -103,7 +104,7 @@ namespace Viscoplastic
     virtual double
     energy_norm() const = 0;
 
-    /// What errors are compared with.
+    /// The norm to which relative errors refer.
     double
     size() const
     {
@@ -119,7 +120,8 @@ namespace Viscoplastic
             const double          tolerance,
             Vector<double>       &w) = 0;
 
-    /// Of a correction, (l - A u) . w and w . A w, and A w on the face.
+    /// The terms of a line search along a correction w: slope (l - A u) . w,
+    /// curvature w . A w, and the response A w on the face.
     struct SearchTerms
     {
       double         slope, curvature;

@@ -69,8 +69,8 @@ namespace Viscoplastic
       return loss;
     }
 
-    /// Where the loss is 1 or more, the friction and the place of the most of
-    /// it, for messages.
+    /// If largest_loss() is 1 or more: words for messages that name the
+    /// friction and the node where it is largest.
     const std::string &
     doubt() const
     {

@@ -7,8 +7,8 @@
 
 namespace Viscoplastic
 {
-  /// Of bounds of friction that follow from the pressures p_k >= 0 of the
-  /// obstacles of the same node:
+  /// The coefficients of friction bounds that depend on the pressures p_k >= 0
+  /// of the obstacles of the same node:
   ///
   ///     rho_c = g_c + sum_k mu_ck p_k
   struct CoulombCoefficients

@@ -17,7 +17,7 @@ namespace Viscoplastic
   /// pressure.
   struct CoulombLaw : CoulombCoefficients
   {
-    /// Where a node is, for messages.
+    /// The position of a node in words, for messages.
     std::function<std::string(unsigned int)> place;
 
     /// relax_node() with the bounds of the pressures that come out, which are
@@ -52,7 +52,7 @@ namespace Viscoplastic
                    const Vector<double> &residual,
                    ContactState         &state) const;
 
-    /// The same with a part of the coefficients.
+    /// This law with the coefficients mu_ck multiplied by @p part.
     CoulombLaw
     with_part(double part) const;
 

@@ -59,11 +59,13 @@ namespace Viscoplastic
     const DoFHandler<dim> &dof_handler;
     const Scene<dim>      &scene;
     const MPI_Comm         communicator;
-    /// With it, FEValues have the weights of integrals over the body.
+    /// The mapping that includes 2 pi r for bodies of revolution: FEValues made
+    /// with it have the weights of integrals over the body.
     const Mapping<dim> &mapping;
-    /// Of curved boundaries in contact with another body, or null.
+    /// Normals of the curved boundaries that are in contact with another body;
+    /// null if there are none.
     const std::unique_ptr<const SurfaceNormals<dim>> surface_normals;
-    /// Of each boundary in contact with another body; see
+    /// The mortar interpolation of each secondary boundary, see
     /// mortar_interpolation().
     const std::map<types::boundary_id, MortarRows> mortar_rows;
     /// Relevant are those at owned cells and their neighbors, and opposite of
@@ -75,7 +77,8 @@ namespace Viscoplastic
     /// a node of no mesh, behind all others; the second one is no unknown. The
     /// last rank owns it, and it is relevant to all.
     const std::optional<std::size_t> axial;
-    /// There, the size of the body, the same on all its meshes.
+    /// The length that scales the unknown of the axial strain in generalized
+    /// plane strain: the size of the body, equal on all its meshes.
     const double axial_length;
 
     /// The owned cells, in the order of owned_cells(): that of all data that
@@ -190,7 +193,8 @@ namespace Viscoplastic
       double     bulge;
     };
 
-    /// That of an independent node of a secondary side.
+    /// The coupling of the independent node of a secondary boundary whose first
+    /// degree of freedom is @p first_dof.
     const Coupling &
     coupling_at(const types::global_dof_index first_dof) const
     {
@@ -284,7 +288,8 @@ namespace Viscoplastic
     std::vector<DistributedVector>
     motions_held_by_contact() const;
 
-    /// What a combination of these is called, by its largest part.
+    /// The name of a combination of free rigid motions, such as "rotation", by
+    /// its largest component; @p in_free_motions: its coefficients.
     std::string
     name_of_motion(const std::vector<double> &in_free_motions) const;
 

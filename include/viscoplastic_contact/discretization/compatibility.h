@@ -9,7 +9,7 @@
 
 namespace Viscoplastic
 {
-  /// By how much initial data and loads are not in equilibrium.
+  /// The imbalance between the initial stress and the loads at t = 0.
   template <int dim>
   struct CompatibilityViolation
   {
@@ -40,13 +40,13 @@ namespace Viscoplastic
                           const DistributedVector    &u,
                           ContactState               &contact);
 
-  /// Where what boundaries prescribe of u at a common node differs most at
-  /// time t.
+  /// The node at which the displacements that two boundaries prescribe at time
+  /// t differ most.
   template <int dim>
   struct DisplacementJump
   {
     double t = 0., size = 0.;
-    /// Of what is prescribed anywhere.
+    /// The largest displacement that is prescribed anywhere.
     double                       largest = 0.;
     Point<dim>                   position;
     std::set<types::boundary_id> boundaries;

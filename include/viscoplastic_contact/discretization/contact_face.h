@@ -52,9 +52,9 @@ namespace Viscoplastic
     types::global_dof_index
     n_global_points(const bool of_obstacles = false) const;
 
-    /// How fast each point slips with a velocity (Cartesian, with ghosts) that
-    /// is the mean between two times; empty where no bound depends on it.
-    /// Collective.
+    /// The slip rate of each point, relative to its foundation, for the mean
+    /// velocity between two times (Cartesian, with ghosts). Empty if no
+    /// friction bound depends on slip rates. Collective.
     std::vector<double>
     slip_rates(const DistributedVector &velocity,
                const double             t_old,
@@ -82,14 +82,16 @@ namespace Viscoplastic
                         std::vector<double>       &bounds,
                         const std::vector<double> &slip_rates = {}) const;
 
-    /// Of each point of friction, what a unit of force of each obstacle of its
-    /// node adds to the bound: of_pressure of CoulombLaw. Collective.
+    /// The coefficients mu_ck by which a unit of force at obstacle k of its
+    /// node raises the friction bound of point c:
+    /// CoulombCoefficients::of_pressure. Collective.
     std::vector<std::vector<double>>
     bounds_of_pressure(const double               t,
                        const std::vector<double> &slip_rates = {}) const;
 
-    /// How far the friction bounds of a step, of the pressure and the slip rate
-    /// of the step before, are from those of the step itself.
+    /// The error of lagged friction bounds: their difference between the
+    /// pressure and slip rate of the step before, which the step has used, and
+    /// those of its end.
     struct MissedBounds
     {
       /// The sum of the bounds of the step itself, and of the differences.
@@ -98,7 +100,8 @@ namespace Viscoplastic
       double work = 0.;
     };
 
-    /// At the end of a step. Collective.
+    /// The error of lagged bounds at the end of a step, in @p state.
+    /// Collective.
     MissedBounds
     missed_bounds(const State<dim> &state) const;
 
@@ -184,9 +187,9 @@ namespace Viscoplastic
       Tensor<1, dim> friction, contact;
     };
 
-    /// Those of each boundary with contact points, where there are several. The
-    /// force of a point that is on several boundaries is split by its area on
-    /// each. Collective.
+    /// The resultant forces on each boundary with contact points, if there are
+    /// several of these. The force of a point that lies on several boundaries
+    /// is divided in proportion to its area on each. Collective.
     std::map<types::boundary_id, BoundaryForces>
     forces_by_boundary(const ContactState &state) const;
 
@@ -195,8 +198,9 @@ namespace Viscoplastic
     Tensor<1, dim>
     resultant_on_foundations(const ContactState &state) const;
 
-    /// How far the foundation of each point slides between two times, along the
-    /// directions of the slip of that point. Empty if no foundation moves.
+    /// The tangential increment of displacement of each point's foundation
+    /// between two times (ContactState::foundation_step). Empty if no
+    /// foundation moves.
     std::vector<Tensor<1, 2>>
     foundation_step(const double t_old, const double t) const;
 

@@ -7,8 +7,8 @@
 
 namespace Viscoplastic
 {
-  /// Where bilateral contact pulls at the body instead of pressing: it does not
-  /// open, so this is what tells whether the model is still the reality.
+  /// The largest tensile contact stress of bilateral contact, and its place:
+  /// such contact cannot open, so tension shows that the model does not hold.
   template <int dim>
   class ContactTension
   {

@@ -53,7 +53,8 @@ namespace Viscoplastic
       return face ? face->restriction() : no_face;
     }
 
-    /// What decides on the linear solver of this mesh.
+    /// The sizes from which the linear solver of this mesh is chosen (see
+    /// solver_choice.h).
     SolverDemand
     solver_demand() const;
 
@@ -67,7 +68,7 @@ namespace Viscoplastic
     Loads<dim>       loads;
     /// Between the body and the ground; null if there are none.
     std::unique_ptr<Springs<dim>> springs;
-    /// Where bilateral contact pulls; null without bilateral contact.
+    /// Tension at bilateral contact; null if there is none.
     std::unique_ptr<ContactTension<dim>> tension;
     /// The contact points; null without friction and unilateral contact.
     std::unique_ptr<ContactFace<dim>> face;
@@ -75,7 +76,7 @@ namespace Viscoplastic
     std::unique_ptr<HeldTraction<dim>> held_traction;
     /// Null without contact between bodies.
     std::unique_ptr<InterfaceSlide<dim>> slide;
-    /// How many steps there will be on this mesh at least.
+    /// A lower bound on the number of time steps on this mesh.
     unsigned int n_steps;
     /// The matrix of a(.,.) with that of springs, in nodal frames.
     DistributedMatrix matrix;

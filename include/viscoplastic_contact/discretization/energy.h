@@ -41,7 +41,8 @@ namespace Viscoplastic
                    const State<dim>    &old_state,
                    const State<dim>    &state);
 
-  /// What a cell stores and has dissipated in the step that led to a state.
+  /// The stored energy of a cell and its viscous dissipation in the step that
+  /// led to a state.
   struct CellEnergies
   {
     /// The mean of the strain and the stress.

@@ -11,9 +11,9 @@
 
 namespace Viscoplastic
 {
-  /// Which law G each owned cell has, and what the parameters of the law are at
-  /// each of its samples. Parameters of laws that do not depend on time are
-  /// evaluated once.
+  /// The flow law G of each owned cell, with the law's parameters at each
+  /// sample of the irreversible stress. Parameters of laws that do not depend
+  /// on time are evaluated once.
   template <int dim>
   class FlowLaws
   {

@@ -72,7 +72,8 @@ namespace Viscoplastic
                 const Forces<dim>          &forces);
 
 
-  /// How well the discrete friction law holds: all zero but for the first.
+  /// Defects of the discrete friction law, zero up to rounding, and (first) the
+  /// resultant friction force.
   struct FrictionIdentities
   {
     /// max |lambda_c|/rho_c, at most 1.
@@ -92,7 +93,7 @@ namespace Viscoplastic
     double foundation_work = 0.;
   };
 
-  /// What contact that opens and closes does.
+  /// Forces, areas and gaps of unilateral contact and normal compliance.
   template <int dim>
   struct NormalContact
   {

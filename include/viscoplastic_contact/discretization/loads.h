@@ -8,7 +8,8 @@
 
 namespace Viscoplastic
 {
-  /// What stands for b among the boundaries with loads.
+  /// The id under which the body force b is listed among the boundaries with
+  /// loads.
   constexpr types::boundary_id body_force_id = numbers::invalid_boundary_id;
 
 

@@ -18,7 +18,8 @@ namespace Viscoplastic
   struct MortarRow
   {
     std::vector<NodeHierarchy::Parent> nodes;
-    /// By how much more curved surfaces are apart there than their faces.
+    /// The distance between the two curved surfaces beyond that between their
+    /// plane faces at the node.
     double bulge = 0.;
   };
 

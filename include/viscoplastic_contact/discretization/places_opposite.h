@@ -29,7 +29,8 @@ namespace Viscoplastic
   template <int dim>
   struct PlaceOpposite
   {
-    /// None where nothing lies opposite.
+    /// The nodes and weights of the displacement at the opposite place; empty
+    /// if nothing lies opposite.
     std::vector<NodeHierarchy::Parent> nodes;
     Tensor<1, dim>                     distance;
     double                             softness = 0.;

@@ -74,8 +74,8 @@ namespace Viscoplastic
 
     std::array<Point<dim>, n>     vertices;
     std::array<Tensor<1, dim>, n> normals;
-    /// From the vertices to the surface: not zero where they are hanging nodes,
-    /// which are in the middle of an edge.
+    /// The vectors from the vertices of the face to the curved surface: not
+    /// zero at hanging nodes, which lie in the middle of an edge.
     std::array<Tensor<1, dim>, n> lifts;
 
     Point<dim>

@@ -15,7 +15,8 @@ namespace Viscoplastic
   template <int dim>
   constexpr unsigned int n_rigid_motions = dim == 2 ? 3 : 6;
 
-  /// Of one part of the body after the other.
+  /// A rigid motion: its coefficients for each connected part of the body, one
+  /// part after the other.
   using RigidMotion = std::vector<double>;
 
   /// The displacement of a place, relative to the center of rotations, in
@@ -30,9 +31,9 @@ namespace Viscoplastic
   std::string
   in_words(std::vector<RigidMotion> motions);
 
-  /// What conditions see of the rigid motions, row by row, as the triangle R
-  /// of rows = Q R. (R^T R would not tell the width of a thin sheet from
-  /// rounding.)
+  /// The constraints of boundary conditions on the rigid motions, one row each,
+  /// kept as the factor R of their QR factorization. (R^T R would not tell the
+  /// width of a thin sheet from rounding.)
   class SeenMotions
   {
   public:

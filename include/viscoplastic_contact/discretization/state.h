@@ -24,20 +24,20 @@ namespace Viscoplastic
     /// initial stress.
     IrreversibleStress z;
 
-    /// At the same samples, with viscosity and an error estimate only: what the
-    /// time scheme has left out of z so far, to leading order, and what its
-    /// second order needs (see ErrorEstimator).
+    /// At the samples of z, only with viscosity and an error estimate: the
+    /// leading term of the time discretization error of z so far, and the slope
+    /// of the rate that the second order needs (see ErrorEstimator).
     IrreversibleStress time_error, rate_slope;
-    /// Of a force as quantity of interest: the time error as far as it has not
-    /// relaxed.
+    /// If the quantity of interest is a force: the part of the time error of z
+    /// that has not relaxed yet.
     IrreversibleStress remembered_error;
 
     /// The history variables alpha_n of the laws at the samples, their time
     /// error and the slope of their rates; empty unless a law has any.
     IrreversibleStress history, history_error, history_slope;
 
-    /// What contact has done in the step that led here; no points without
-    /// friction and contact that opens.
+    /// The state of contact after the step that led to this state; without
+    /// points if the scene has neither friction nor contact that opens.
     ContactState contact;
 
     /// u_0, Cartesian with ghosts; empty where zero.

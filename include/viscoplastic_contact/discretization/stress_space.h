@@ -105,8 +105,9 @@ namespace Viscoplastic
     mean_stress(const DistributedVector  &ghosted_u,
                 const IrreversibleStress &z) const;
 
-    /// For each child of a cell, the matrix that makes the samples of the child
-    /// from those of its parent, as values of the polynomial through them.
+    /// For each child of a cell, the matrix from the values at the samples of
+    /// the parent to those at the samples of the child: interpolation by the
+    /// polynomial through the parent's samples.
     std::vector<FullMatrix<double>>
     prolongation() const;
 

@@ -9,8 +9,10 @@
 
 namespace Viscoplastic
 {
-  /// What a mesh does to a quantity of interest on the boundary, which no
-  /// residual knows. Made once a mesh; costs nothing where there is none of it.
+  /// The part of the discretization error of a quantity of interest that comes
+  /// from the boundary (interpolated data, faces opposite each other), which no
+  /// residual contains. Constructed once a mesh; nothing is computed in scenes
+  /// without it.
   template <int dim>
   class BoundaryDefects
   {

@@ -17,7 +17,8 @@ namespace Viscoplastic
   template <int dim>
   struct DualSolution
   {
-    /// In frames, and Cartesian with ghosts.
+    /// The dual displacement w, in nodal frames (owned entries), and in
+    /// Cartesian components with ghosts.
     DistributedVector w, cartesian;
     /// What holds w on Gamma_3: nodal forces on the face, empty without contact
     /// points, and their density with that of what holds bodies to each other,
@@ -94,7 +95,7 @@ namespace Viscoplastic
       return solve(solver, discretization.matrix, contact, law);
     }
 
-    /// The same with another matrix in the place of a(.,.).
+    /// The dual solution with another @p matrix in the place of that of a(.,.).
     DualSolution<dim>
     solve(BulkSolver              &solver,
           const DistributedMatrix &matrix,

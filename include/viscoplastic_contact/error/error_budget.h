@@ -23,18 +23,19 @@ namespace Viscoplastic
     static constexpr double initial_share = 0.25;
     /// The share of what coarser meshes take from z, over the run.
     static constexpr double transfer_share = 0.1;
-    /// What the mesh may use whatever the others have used.
+    /// The least share of the tolerance that is left to the mesh, however much
+    /// the other errors take.
     static constexpr double least_space_share = 0.4;
 
-    /// Of a scene in @p dimension dimensions with a scheme of order @p order.
-    /// @p of_quantity: whether the tolerance is that of the quantity of
-    /// interest, whose value is the size of the solution then.
+    /// The budget for a scene in @p dimension dimensions with a time scheme of
+    /// order @p order. @p of_quantity: whether the tolerance is that of the
+    /// quantity of interest, whose value is the size of the solution then.
     ErrorBudget(const double       tolerance,
                 const unsigned int dimension,
                 const unsigned int order,
                 const bool         of_quantity = false);
 
-    /// That of a run; nothing without a tolerance.
+    /// The budget of a run with these parameters; nothing without a tolerance.
     static std::optional<ErrorBudget>
     of_run(const Parameters &parameters);
 
@@ -54,8 +55,8 @@ namespace Viscoplastic
                            estimate.energy_norm;
     }
 
-    /// What the solution is expected to reach, from what a coarse run has
-    /// found, which may be too large.
+    /// Set the expected size of the solution (energy norm, or value of the
+    /// quantity) to that @p of_coarse_run, which may be too large.
     void
     expect_size(const double of_coarse_run)
     {
@@ -70,28 +71,29 @@ namespace Viscoplastic
       return std::max(expected_size, so_far);
     }
 
-    /// What the initial data may use; zero if nothing can be said before the
-    /// first step.
+    /// The share of the tolerance for the error of the initial data, absolute;
+    /// zero if nothing can be said before the first step.
     double
     initial() const
     {
       return of_quantity ? 0. : initial_share * tolerance * expected_size;
     }
 
-    /// What the next change of the mesh may take from z, in the energy norm:
-    /// half of what is left.
+    /// The error that the next change of the mesh may make by coarsening z, in
+    /// the energy norm: half of what is left.
     double
     transfer(const ErrorEstimate &accepted, const double size) const;
 
-    /// What the time steps of the run may use, relative to the solution.
+    /// The tolerance of all time steps of the run together, relative to the
+    /// size of the solution.
     double
     time_tolerance() const
     {
       return time_share * tolerance;
     }
 
-    /// What the mesh may use in a state with these errors; @p size is the
-    /// largest of the run.
+    /// The error that the mesh may make in a state with these @p errors,
+    /// absolute; @p size: the largest norm of the solution in the run.
     double
     space(const ErrorParts &errors,
           const double      size,
@@ -100,8 +102,9 @@ namespace Viscoplastic
     const double tolerance;
     const bool   of_quantity;
     double       expected_size = 0.;
-    /// What finer meshes have been found not to lower of the error of meshes,
-    /// as what earlier ones have left in z. Zero if nothing.
+    /// The part of the error of meshes that finer ones have been found not to
+    /// reduce, such as what earlier meshes have left in z; zero if there is
+    /// none.
     double unavoidable = 0.;
 
   private:

@@ -12,8 +12,9 @@ namespace Viscoplastic
   {
     /// The error of the mesh, see SpaceEstimator.
     double space = 0.;
-    /// What the meshes have left in z and the strain does not show: the rates
-    /// of cell means, and of cells that have been refined since.
+    /// The error that meshes have left in the irreversible stress z and that
+    /// the strain does not show: from rates at cell means, and from cells that
+    /// have been refined since.
     double history = 0.;
     /// The error of the time steps up to now, (int E^-1 D : D)^{1/2}, with D
     /// the sum of their defects (see ErrorEstimator), and `swing', by squares.
@@ -21,8 +22,8 @@ namespace Viscoplastic
     /// The error of slip that has turned its direction within steps, and of
     /// friction bounds that follow the step before.
     double friction = 0.;
-    /// What changes of the mesh have taken from z, (int E^-1 d : d)^{1/2} with
-    /// d the change of z in coarsened cells, summed.
+    /// The error of coarsening: (int E^-1 d : d)^{1/2} with d the change of z
+    /// in coarsened cells, summed over the changes of the mesh.
     double transfer = 0.;
     /// The error of the iterations that solved the step.
     double algebraic = 0.;
@@ -34,7 +35,7 @@ namespace Viscoplastic
     /// meshes alone is orthogonal to what the present one cannot resolve.
     bool history_adds = false;
 
-    /// Of the present mesh and the former ones.
+    /// The error of the present mesh and of former ones together.
     double
     of_meshes() const
     {
@@ -64,22 +65,25 @@ namespace Viscoplastic
   struct QuantityEstimate : public ErrorParts
   {
     double value = 0.;
-    /// What is to be added to the value: the errors of mesh and time steps with
-    /// their signs, as far as they are known.
+    /// Corrections to be added to the value: the signed errors of the mesh and
+    /// of the time steps, as far as their signs are known.
     double space_correction = 0., time_correction = 0.;
-    /// Of a sum over the steps: the parts of these that later steps can no
-    /// longer change.
+    /// If the quantity is a sum over the steps: the parts of both corrections
+    /// that later steps can no longer change.
     double settled_space = 0., settled_time = 0.;
     /// The sum of what the cells contribute to the error of the mesh, without
     /// signs.
     double unsigned_space = 0.;
-    /// What creep has made of the error of the mesh, without signs.
+    /// The error of the mesh that has accumulated by creep, sum of absolute
+    /// values.
     double space_of_creep = 0.;
-    /// What the boundary adds, see BoundaryDefects.
+    /// The error from the boundary, see BoundaryDefects.
     double of_boundary = 0.;
-    /// Of slip that turns and that comes to rest within steps, summed.
+    /// Errors of slip that turns and of slip that comes to rest within steps
+    /// (SlipDefects), summed over the steps.
     double turning = 0., resting = 0.;
-    /// What the step has added to `friction', and by data that swing to `time'.
+    /// The increments of the last step: of `friction', and of `time' by data
+    /// that oscillate within the step.
     double friction_indicator = 0.;
     /// a(w, w)^{1/2} of the dual solution w, and its own estimated error.
     double dual_norm = 0., dual_error = 0.;
@@ -101,15 +105,17 @@ namespace Viscoplastic
   /// All that is estimated of a state.
   struct ErrorEstimate : public ErrorParts
   {
-    /// That of `Error control/Quantity'; zero without one.
+    /// The estimate for the quantity of interest (`Error control/Quantity');
+    /// zero without one.
     QuantityEstimate quantity;
 
-    /// What data have done within steps and not shown at their ends, see
-    /// swing_of_data(); the squares of all steps add up.
+    /// The variation of data within steps that their ends do not show, see
+    /// swing_of_data(): root of the sum of squares over the steps.
     double swing = 0., swing_share = 0.;
-    /// What this step alone has added to `time'.
+    /// The increment of `time' in the last step.
     double time_indicator = 0.;
-    /// What of it a force as quantity of interest will remember.
+    /// The part of that increment that does not relax and stays in a force as
+    /// quantity of interest.
     double remembered_indicator = 0.;
     /// (sum_j (k_j/3) |du_j - du_{j-1}|^2)^{1/2}, the computable part of
     /// I^k(u')^{1/2}, (5.19); energy^{1/2} time^{-1/2}.
@@ -140,14 +146,14 @@ namespace Viscoplastic
 
 
 
-  /// What there is to say of all steps.
+  /// The largest errors and sizes over all steps of a run.
   struct ErrorSummary
   {
     /// The estimate with the largest total, and its time.
     ErrorParts largest;
     double     t = 0.;
-    /// Of the solution, the largest over the run: the energy norm, or the size
-    /// of the quantity.
+    /// The largest size of the solution over the run: its energy norm, or the
+    /// absolute value of the quantity.
     double size = 0.;
 
     /// Take a state at time t into account.

@@ -62,8 +62,8 @@ namespace Viscoplastic
   class ErrorEstimator
   {
   public:
-    /// From the work of slip that turns to its error: one number for all
-    /// scenes.
+    /// The factor from the work of slip that turns (SlipDefects::work) to its
+    /// error in the energy norm, calibrated once for all scenes.
     static constexpr double friction_calibration = 0.4;
 
     /// Bounds of the relative tolerance of coupled iterations.

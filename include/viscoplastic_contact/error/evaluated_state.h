@@ -31,7 +31,8 @@ namespace Viscoplastic
     /// Whether the slip of its step goes on in the next one: not that of the
     /// first step on a new mesh, which brings the body into equilibrium there.
     bool has_slip_rate = true;
-    /// Of the solve that has given u, which may be that of an earlier step.
+    /// The report of the solve that gave u, which may be that of an earlier
+    /// step.
     ContactReport report;
   };
 } // namespace Viscoplastic

@@ -24,8 +24,9 @@ namespace Viscoplastic
   /// transient.
   struct HistoryReconstruction
   {
-    /// At the samples of all owned cells, or of cell means at the centers of
-    /// the children that they would have.
+    /// Reconstructed z and stress at the samples of all owned cells; if samples
+    /// are cell means, at the centers of the children that the cells would
+    /// have.
     IrreversibleStress z, stress;
     /// What is wrong in z in each active cell, (int E^-1 e : e), zero on cells
     /// of other ranks. As it was, e is what the slopes have changed;

@@ -49,7 +49,8 @@ namespace Viscoplastic
                   const EvaluatedState<dim> &end,
                   const double               so_far);
 
-    /// How many times too coarse the mesh was for the step that is repeated.
+    /// The ratio of the error of the mesh to what it may be, for the step that
+    /// is repeated.
     double
     excess() const
     {

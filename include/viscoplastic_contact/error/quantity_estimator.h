@@ -79,10 +79,10 @@ namespace Viscoplastic
     static constexpr double safety = 2.;
     /// A quantity that is less than this of what it could be is rounding.
     static constexpr double nothing = 1e-9;
-    /// What has crept for less than this of a relaxation time is elastic.
+    /// The part of a relaxation time below which a cell counts as elastic.
     static constexpr double elastic = 0.01;
-    /// What counts at least of the sum without signs where a body creeps:
-    /// contributions that cancel more are no more accurate than that.
+    /// In bodies that creep, the least ratio of the estimate to the sum of
+    /// absolute contributions: cancellation beyond that is not trusted.
     static constexpr double least_share = 0.25;
 
     /// A solver for the matrix of tangents, until the next one is asked for,

@@ -67,14 +67,15 @@ namespace Viscoplastic
     /// The argument stays in use.
     explicit ResidualEstimator(const LocalCells<dim> &cells);
 
-    /// What has residuals.
+    /// A displacement and stress field whose residuals are computed.
     struct Fields
     {
-      /// With ghosts, Cartesian.
+      /// The displacement, Cartesian, with ghosts.
       const DistributedVector &u;
       /// Without thermal stress, but with mean dilatation; may be empty.
       const IrreversibleStress &z;
-      /// Of the data; none, for fields that have no data.
+      /// The time at which the loads are evaluated; none for fields without
+      /// loads.
       std::optional<double> t;
       /// The nodal field lambda_h on Gamma_3 and on both sides of interfaces,
       /// Cartesian with ghosts; null without contact points and interfaces.

@@ -18,7 +18,8 @@ namespace Viscoplastic
     /// have left, and what cell means cannot hold. A history at quadrature
     /// points is compared at these points only.
     double memory = 0.;
-    /// What squared_recovery_estimate() makes of the error in the energy norm.
+    /// The estimate of the error in the energy norm by
+    /// squared_recovery_estimate().
     double recovery = 0.;
     /// The squared error in the energy norm by active cell, of owned cells.
     Vector<double> squared_energy_by_cell;

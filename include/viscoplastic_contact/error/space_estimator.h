@@ -14,12 +14,13 @@ namespace Viscoplastic
   /// The error of a state in space.
   struct SpaceEstimate
   {
-    /// In the energy norm; zero where only Kelly's estimate is made.
+    /// The estimate in the energy norm; zero if only Kelly's indicator is
+    /// computed.
     double total = 0.;
     /// The part of it that recovered strains tell.
     double recovery = 0.;
-    /// What cell means leave out of G, see cell_mean_defect(), or volumetric
-    /// locking holds back; zero where neither is.
+    /// The error of the rate G: of cell means (cell_mean_defect()) or by
+    /// volumetric locking; zero without either.
     double rate_defect = 0.;
     /// The part of it that curved faces of bodies that touch miss of the
     /// geometry, squared by active cell; empty without them.
@@ -62,8 +63,8 @@ namespace Viscoplastic
              const DualSolution<dim> &dual,
              const double             memory) const;
 
-    /// The same by RecoveryEstimator, which sees what creep has made of errors
-    /// of the rates. Collective.
+    /// The products of both fields' errors by RecoveryEstimator, which includes
+    /// the errors that creep has accumulated from those of rates. Collective.
     Vector<double>
     multiply_recovered(
       const State<dim>                                     &state,

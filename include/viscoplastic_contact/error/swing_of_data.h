@@ -6,11 +6,12 @@
 
 namespace Viscoplastic
 {
-  /// What data do within a step and do not show at its ends.
+  /// The variation of data within a time step that the values at its ends do
+  /// not show.
   struct Swing
   {
-    /// As a part of the forces or of the displacement of the body; and in the
-    /// energy norm.
+    /// The variation relative to the forces or the displacement of the body,
+    /// and its effect in the energy norm.
     double share = 0., energy_norm = 0.;
   };
 

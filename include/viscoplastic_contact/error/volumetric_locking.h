@@ -9,13 +9,13 @@
 
 namespace Viscoplastic
 {
-  /// What volumetric locking takes from the strain, in the energy norm.
+  /// The error of volumetric locking in the strain, in the energy norm.
   struct VolumetricLocking
   {
-    /// Of the elastic strain, squared, by active cell; zero on cells of other
-    /// ranks.
+    /// The squared error of the elastic strain in each active cell; zero on
+    /// cells of other ranks.
     Vector<double> squared_error;
-    /// Of the rate of the irreversible one.
+    /// The error of the rate of irreversible strain.
     double rate;
   };
 

@@ -146,7 +146,8 @@ namespace Viscoplastic
                    const Stiffness             &stiffness,
                    const LawPoint              &point);
 
-  /// What a solver takes for C, and its inverse.
+  /// The positive definite tangent that linear solvers use in the place of C,
+  /// and its inverse.
   struct StepTangent
   {
     SymmetricTensor<4, 3> tangent, compliance;

@@ -440,7 +440,8 @@ namespace Viscoplastic
 
 
 
-  /// What the registry knows of a law.
+  /// The entry of the registry for a law: name, help text, parameters and
+  /// constructor.
   struct LawDescription
   {
     /// The value of the entry `Law`, and the name of the law's subsection.

@@ -9,8 +9,8 @@
 
 namespace Viscoplastic
 {
-  /// What an iterative solver has learnt from earlier solves with a matrix and
-  /// uses in later ones: how its preconditioner was built, and how it is doing.
+  /// What an iterative solver keeps from earlier solves with a matrix for later
+  /// ones: how its preconditioner was built, and the iterations it has taken.
   struct PreconditionerState
   {
     /// The truncation for which it was built.
@@ -36,7 +36,7 @@ namespace Viscoplastic
     virtual bool
     is_exact() const = 0;
 
-    /// What the solver is called in messages, e.g. "direct (CHOLMOD)".
+    /// The name of the solver in messages, e.g. "direct (CHOLMOD)".
     virtual std::string
     name() const = 0;
 
@@ -64,7 +64,7 @@ namespace Viscoplastic
           DistributedVector       &u,
           const SolutionScale     &scale = {}) = 0;
 
-    /// That of all solves; there must be contact points.
+    /// The face matrix that all solves share; there must be contact points.
     virtual const FaceMatrix &
     face_matrix() const = 0;
 

@@ -26,8 +26,8 @@ namespace Viscoplastic
     std::function<NodeHierarchy()> hierarchy;
     /// The restriction to the contact face; empty without contact points.
     const FaceRestriction &face;
-    /// How many owned degrees of freedom at the end belong to no node of the
-    /// mesh.
+    /// The number of owned degrees of freedom, last in the numbering, that
+    /// belong to no node of the mesh.
     unsigned int n_beyond_mesh = 0;
   };
 

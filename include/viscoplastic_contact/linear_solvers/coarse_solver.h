@@ -5,9 +5,9 @@
 
 namespace Viscoplastic
 {
-  /// What solves on the first level of a multigrid cycle, in Cartesian
-  /// components, exactly or nearly: symmetric and positive definite on what is
-  /// free. All calls are collective.
+  /// The solver on the coarsest level of a multigrid cycle, exact or
+  /// approximate, in Cartesian components: a symmetric operator, positive
+  /// definite on the free directions. All calls are collective.
   template <int dim>
   class CoarseSolver
   {

@@ -73,7 +73,7 @@ namespace Viscoplastic
     vmult_matrix(DistributedVector       &y,
                  const DistributedVector &x) const override;
 
-    /// What smoothed aggregation was built for.
+    /// The truncation for which smoothed aggregation was built.
     std::optional<PreconditionerState>
     state() const override;
 

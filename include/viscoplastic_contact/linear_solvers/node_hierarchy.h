@@ -27,11 +27,11 @@ namespace Viscoplastic
 
     /// The number of meshes, the same on all ranks.
     unsigned int n_levels = 0;
-    /// Where the nodes of this rank begin, and the end.
+    /// The range of nodes that this rank owns, [begin, end).
     Node begin = 0, end = 0;
 
-    /// Where those of all ranks end: degrees of freedom of nodes beyond are no
-    /// displacements of the mesh.
+    /// The end of the nodes of all ranks: degrees of freedom of nodes beyond
+    /// are no displacements of the mesh.
     Node end_of_mesh = numbers::invalid_dof_index;
 
     /// The first mesh that has each owned node; invalid_unsigned_int for

@@ -8,15 +8,16 @@
 
 namespace Viscoplastic
 {
-  /// What conjugate gradients take for the inverse of K + springs on the
-  /// truncated space: symmetric and positive definite. Vectors are in nodal
-  /// frames, on owned entries. All calls are collective.
+  /// An approximate inverse of K + springs on the truncated space for conjugate
+  /// gradients: symmetric and positive definite. Vectors are in nodal frames,
+  /// on owned entries. All calls are collective.
   class Preconditioner
   {
   public:
     virtual ~Preconditioner() = default;
 
-    /// What it is called in messages, e.g. "algebraic multigrid (ML)".
+    /// The name of the preconditioner in messages, e.g. "algebraic multigrid
+    /// (ML)".
     virtual std::string
     name() const = 0;
 

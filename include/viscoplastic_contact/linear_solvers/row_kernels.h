@@ -21,7 +21,7 @@ namespace Viscoplastic
   };
 
 
-  /// What products with rows of a matrix need, as plain pointers: see
+  /// The data of products with rows of a matrix, as plain pointers: see
   /// SharedRows.
   template <int dim, typename Number>
   struct RowTable

@@ -59,7 +59,8 @@ namespace Viscoplastic
     void
     residual(Number *r, const Number *x, const Number *b) const;
 
-    /// What Gauss-Seidel multiplies residuals by.
+    /// Set the inverse of a node's diagonal block, by which Gauss-Seidel
+    /// multiplies residuals.
     void
     set_inverse_block(const unsigned int node, const NodeBlock<dim> &block);
 

@@ -31,7 +31,8 @@ namespace Viscoplastic
     unsigned int dim = 2, n_ranks = 1;
     /// The largest Poisson's ratio of the material that the matrix stands for.
     double max_poissons_ratio = 0.;
-    /// How often the solver will be used at least, and how often in a step.
+    /// The least number of solves with one matrix, and the number of solves in
+    /// a time step.
     unsigned int n_solves = 1, solves_per_step = 1;
     /// Degrees of freedom in all, and of these on the contact face. Prices are
     /// those of systems beyond dealii::types::global_dof_index, too.
@@ -62,9 +63,10 @@ namespace Viscoplastic
     double set_up, step;
   };
 
-  /// What a solver is expected to cost: powers of the degrees of freedom,
-  /// measured by benchmarks/step_cost.py and benchmarks/new_mesh.py. Only
-  /// ratios mean anything on other machines and in other scenes.
+  /// The expected cost of a solver: powers of the number of degrees of freedom,
+  /// fitted to measurements by benchmarks/step_cost.py and
+  /// benchmarks/new_mesh.py. Only ratios mean anything on other machines and in
+  /// other scenes.
   SolverCost
   expected_cost(const BulkSolverKind kind, const SolverDemand &demand);
 

@@ -22,7 +22,7 @@ namespace Viscoplastic
                   const MPI_Comm     communicator);
 
 
-  /// That of the box around the vertices of the coarse mesh.
+  /// The diagonal of the bounding box of the vertices of the coarse mesh.
   template <int dim>
   double
   body_diagonal(const dealii::Triangulation<dim> &triangulation);

@@ -26,7 +26,8 @@ namespace Viscoplastic
 
 
 
-  /// How many times a section at @p x counts: 2 pi r for that of a ring, or 1.
+  /// The extent of the body across its section at @p x: 2 pi r for a body of
+  /// revolution, otherwise 1.
   template <int dim>
   double
   extent(const PlaneModel model, const Point<dim> &x)

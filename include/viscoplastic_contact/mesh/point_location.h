@@ -36,13 +36,13 @@ namespace Viscoplastic
   };
 
 
-  /// Where points are on a mesh, and what is to be known on all ranks of those
-  /// that are outside of it.
+  /// The cells and reference coordinates of points on a mesh and, on all ranks,
+  /// the points outside of it.
   template <int dim>
   struct PointLocations
   {
     std::vector<CellPoint<dim>> points;
-    /// How far each one is from its place in the mesh: 0 inside.
+    /// The distance of each point from its place in the mesh; 0 inside.
     std::vector<double> distances;
   };
 

@@ -15,8 +15,8 @@ namespace Viscoplastic
   // Entries with a closed list of values. Each has an enumeration and
   // choices(), the names of its values in their order as in parameter files.
 
-  /// What a plane mesh stands for: a slice of a long body, whose strain along z
-  /// is zero or the same everywhere, or a section of a body of revolution.
+  /// The body that a plane mesh represents: a slice of a long body with zero or
+  /// uniform strain along z, or the meridian section of a body of revolution.
   enum class PlaneModel
   {
     strain,
@@ -43,7 +43,8 @@ namespace Viscoplastic
     return "automatic|full|mean dilatation";
   }
 
-  /// Where the irreversible stress lives.
+  /// The discretization of the irreversible stress z: one value a cell, or one
+  /// a quadrature point.
   enum class StressHistory
   {
     cell_means,
@@ -73,7 +74,7 @@ namespace Viscoplastic
     return "not given|clamped|displacement|traction|free|symmetry|contact";
   }
 
-  /// What acts along the normal of a contact piece.
+  /// The law of contact along the normal of a boundary piece.
   enum class ContactLaw
   {
     not_given,
@@ -105,7 +106,7 @@ namespace Viscoplastic
     return "not given|none|tresca|coulomb|glued";
   }
 
-  /// What the data of a scene with an exact solution are.
+  /// The origin of loads and boundary values in a scene with an exact solution.
   enum class DataSource
   {
     scene,
@@ -140,7 +141,7 @@ namespace Viscoplastic
     return scheme == TimeScheme::heun ? 2 : 1;
   }
 
-  /// What becomes of an explicit step beyond its stability limit.
+  /// The treatment of explicit steps beyond their stability limit.
   enum class StiffnessPolicy
   {
     refuse,
@@ -215,7 +216,7 @@ namespace Viscoplastic
 
 
 
-  /// What output has only where the scene asks for it.
+  /// Output fields that are written only if the scene asks for them.
   enum class AdditionalField
   {
     total_strain,
@@ -236,8 +237,8 @@ namespace Viscoplastic
 
 
 
-  /// What can be recorded at points, along lines and as integrals: fields of
-  /// the body, and from `slip' on those of its boundary.
+  /// Fields that can be recorded at points, along lines and as integrals:
+  /// fields of the body first, those of its boundary from `slip' on.
   enum class RecordedField
   {
     displacement,

@@ -42,7 +42,7 @@ namespace Viscoplastic
 
     /// The first of the files, which gives the scene its name.
     const std::string file;
-    /// Whose laws are known beside those of the program.
+    /// The shared libraries whose laws are known beside those of the program.
     std::vector<std::string>    shared_libraries;
     std::vector<LawDescription> laws;
     unsigned int                dimension = 2;

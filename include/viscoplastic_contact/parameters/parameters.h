@@ -68,7 +68,7 @@ namespace Viscoplastic
     declare(ParameterHandler &prm, const std::vector<LawDescription> &laws);
   };
 
-  /// How stresses are discretized, the same for all materials.
+  /// The discretization of stresses, the same for all materials.
   struct StressParameters
   {
     VolumetricIntegration volumetric_integration =
@@ -190,7 +190,7 @@ namespace Viscoplastic
     double          coulomb_tolerance  = 1e-6;
     bool            reuse_unchanged    = true;
 
-    /// Where there is no estimate to be coupled to.
+    /// The contact tolerance where no error estimate sets one.
     double
     strict_tolerance() const
     {

@@ -13,10 +13,11 @@
 
 namespace Viscoplastic
 {
-  /// Which units the numbers of an entry may have.
+  /// The dimensions that the numbers in an entry may have.
   struct EntryUnit
   {
-    /// What the whole must be; nothing if that is not known.
+    /// The dimension that the value of the entry must have; nothing if it is
+    /// not known.
     std::optional<Dimension> dimension;
     /// Seconds of the clock on the wall, whatever the units of the scene.
     bool is_wall_time = false;

@@ -22,12 +22,13 @@ namespace Viscoplastic
   std::string
   no_statement(const std::string &text);
 
-  /// What the entry of the line may be instead.
+  /// A sentence that names the values that the entry of the line allows.
   std::string
   wrong_value(const ParameterLine               &line,
               const boost::property_tree::ptree &declared);
 
-  /// What a pattern of ParameterHandler allows, in words: "one of a, b".
+  /// The values that a pattern of ParameterHandler allows, in words: "one of a,
+  /// b".
   std::string
   allowed_values(const std::string &pattern_description);
 } // namespace Viscoplastic

@@ -42,7 +42,7 @@ namespace Viscoplastic
     static std::set<RecordedField>
     of_output(const Scene<dim> &scene);
 
-    /// What the values are called: displacement_x, ..., creep_rate, ...
+    /// The names of the values: displacement_x, ..., creep_rate, ...
     static std::vector<std::string>
     names(const std::set<RecordedField> &fields);
 

@@ -32,13 +32,13 @@ namespace Viscoplastic
     static std::set<RecordedField>
     of_output(const Scene<dim> &scene, const ContactFace<dim> *face);
 
-    /// What a field is called in the outputs, and whether it is a vector.
+    /// The name of a field in outputs.
     static std::string
     name(const RecordedField field);
     static bool
     is_vector(const RecordedField field);
 
-    /// What the values are called; vectors have one a component.
+    /// The names of the values; vectors have one for each component.
     static std::vector<std::string>
     names(const std::set<RecordedField> &fields);
 

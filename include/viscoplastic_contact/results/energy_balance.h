@@ -11,8 +11,8 @@ namespace Viscoplastic
   {
     /// The energy stored at its end.
     double stored;
-    /// What has come and gone in the step; see StressSummary and
-    /// FrictionIdentities.
+    /// External work and dissipation in the step, in units of energy; see
+    /// StressSummary and FrictionIdentities.
     double external_work, viscous_dissipation, friction_dissipation;
     double thermal_work = 0.;
   };
@@ -107,7 +107,7 @@ namespace Viscoplastic
       return friction;
     }
 
-    /// What heating has done to the body.
+    /// The work of thermal strain since t = 0.
     double
     thermal_work() const
     {
@@ -120,14 +120,14 @@ namespace Viscoplastic
       return adaptation;
     }
 
-    /// What stages of construction have added to the stored energy.
+    /// The stored energy that stages of construction have added.
     double
     construction_energy() const
     {
       return construction;
     }
 
-    /// What is missing in the balance.
+    /// The residual of the energy balance since t = 0.
     double
     defect() const
     {
@@ -136,7 +136,8 @@ namespace Viscoplastic
              friction;
     }
 
-    /// What there was to balance, also where loads give back what they took.
+    /// The sum of absolute energies exchanged, to which defect() is compared,
+    /// also where loads give back what they took.
     double
     scale() const
     {

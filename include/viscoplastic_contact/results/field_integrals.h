@@ -21,7 +21,7 @@ namespace Viscoplastic
     /// @p discretization stays in use. Collective.
     explicit FieldIntegrals(const Discretization<dim> &discretization);
 
-    /// What the values are called: area_boundary_3,
+    /// The names of the values: area_boundary_3,
     /// integral_boundary_3_displacement_x, ...
     const std::vector<std::string> &
     names() const

@@ -23,7 +23,7 @@ namespace Viscoplastic
                 const std::vector<Point<dim>> &points,
                 const std::set<RecordedField> &fields);
 
-    /// What the values are called; those from n_of_body() on are of the
+    /// The names of the values; those from n_of_body() on are fields of the
     /// boundary.
     const std::vector<std::string> &
     names() const

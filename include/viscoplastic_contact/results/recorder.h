@@ -106,8 +106,8 @@ namespace Viscoplastic
     void
     check_sizes(const bool at_end) const;
 
-    /// What the numbers of the run have to be taken with: sentences. @p state
-    /// is the last one. Collective.
+    /// Remarks that qualify the results of the run, one sentence each. @p
+    /// state: at the end of the run. Collective.
     std::vector<std::string>
     remarks(const State<dim> &state) const;
 
@@ -127,7 +127,7 @@ namespace Viscoplastic
     std::map<std::string, double>
     seconds() const;
 
-    /// What the run has paid for its effects up to now.
+    /// The wall time that effects of the scene have taken so far.
     RunBill
     bill() const;
 

@@ -30,16 +30,16 @@ namespace Viscoplastic
   void
   remove_other_lines(const std::string &path, std::size_t n_lines);
 
-  /// What a run has cost: studies read it in run.json.
+  /// The costs of a run in run.json, which studies read.
   struct RunCosts
   {
     /// Wall time by phase, see run_phases; of a resumed run, of its last part.
     std::map<std::string, double> seconds;
-    /// What friction takes of the phase `contact', see RunBill.
+    /// Seconds of the phase `contact' that friction takes, see RunBill.
     double friction = 0.;
     /// Memory of all ranks together in MB: before the run, and the largest.
     double first_memory = 0., peak_memory = 0.;
-    /// What the solver of the last mesh had to do.
+    /// The sizes from which the solver of the last mesh was chosen.
     SolverDemand solver_demand;
   };
 

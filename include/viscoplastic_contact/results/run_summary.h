@@ -88,7 +88,7 @@ namespace Viscoplastic
     Largest tension_share;
     /// InterfaceSlide::largest().
     Largest slide;
-    /// Where the displacement and the stress were that large.
+    /// The places of the largest displacement and the largest von Mises stress.
     Point<dim> displacement_position, von_mises_position;
     /// The area of all friction points on the mesh on which slip_area was
     /// reached.
@@ -96,7 +96,7 @@ namespace Viscoplastic
     /// With lagged Coulomb friction: sums over the steps of k times what
     /// StepQuantities::friction_bounds has.
     double missed_bounds = 0., computed_bounds = 0.;
-    /// What has been said of the first steps that may have several solutions.
+    /// Sentences on the first steps whose solution may not be unique.
     std::vector<std::string> doubtful_steps;
     /// The largest k r, and where r was that large.
     Largest    stiffness;
@@ -136,7 +136,7 @@ namespace Viscoplastic
 
 
 
-  /// What a run has paid for its effects: wall time.
+  /// The wall time of the effects of a scene in a run.
   struct RunBill
   {
     /// Seconds by phase, as run_phases names them; `set-up' is that of the

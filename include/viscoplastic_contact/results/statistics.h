@@ -16,7 +16,7 @@ namespace Viscoplastic
   class StatisticsRow
   {
   public:
-    /// Where the value at the end of a run appears.
+    /// The outputs in which the value at the end of a run appears.
     enum class AtEnd
     {
       absent,

@@ -9,8 +9,8 @@
 
 namespace Viscoplastic
 {
-  /// What is measured of a step: the numbers of a row of statistics.csv that
-  /// need the fields.
+  /// Quantities of a step that are computed from its fields, for a row of
+  /// statistics.csv.
   template <int dim>
   struct StepQuantities
   {
@@ -20,11 +20,12 @@ namespace Viscoplastic
     /// The work of loads, prescribed displacements and moving foundations in
     /// the step.
     double external_work = 0.;
-    /// What friction does, and its resultant force on the body; zero without
-    /// friction.
+    /// Defects of the friction law, and the resultant friction force on the
+    /// body; zero without friction.
     FrictionIdentities friction;
     Tensor<1, dim>     friction_force;
-    /// What contact that opens and closes does; zero without.
+    /// Forces and areas of unilateral contact and normal compliance; zero
+    /// without these.
     NormalContact<dim> contact;
     /// ContactFace::forces_by_boundary().
     std::map<types::boundary_id, typename ContactFace<dim>::BoundaryForces>

@@ -8,13 +8,13 @@
 
 namespace Viscoplastic
 {
-  /// What a field of the body or of the contact face is, or one of its
-  /// components; a pure number if it has no unit.
+  /// The physical quantity of a field of the body or of the contact face, or of
+  /// one of its components, given its name; a pure number if it has no unit.
   Quantity
   quantity_of_field(const std::string &name);
 
-  /// What an integral over a boundary or a material is, by the name that
-  /// FieldIntegrals gives it.
+  /// The physical quantity of an integral over a boundary or a material, given
+  /// its name by FieldIntegrals.
   Quantity
   quantity_of_integral(const std::string &name);
 

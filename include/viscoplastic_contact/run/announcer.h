@@ -24,11 +24,12 @@ namespace Viscoplastic
     void
     announce(const Scene<dim> &scene);
 
-    /// Where steps will end.
+    /// Announce the kinks of data at which steps will end.
     void
     announce(const KinksOfScene &found);
 
-    /// What equilibrium at t = 0 has done to the displacement @p u0.
+    /// Announce the largest displacement @p largest_u0 that equilibrium at t =
+    /// 0 has caused.
     void
     announce_equilibrium(const Scene<dim> &scene, const double largest_u0);
 

@@ -6,7 +6,7 @@
 
 namespace Viscoplastic
 {
-  /// What the arguments of the program ask for.
+  /// The arguments of the program, as options and files.
   struct CommandLine
   {
     enum class Task
@@ -53,11 +53,11 @@ namespace Viscoplastic
   CommandLine
   read_command_line(const std::vector<std::string> &arguments);
 
-  /// What `--help' prints.
+  /// The text that `--help' prints.
   std::string
   help_text();
 
-  /// What the program prints without arguments: how to begin.
+  /// The text that the program prints without arguments: how to begin.
   std::string
   guide_text();
 

@@ -23,7 +23,7 @@ namespace Viscoplastic
                    Console          &console,
                    const MPI_Comm    communicator);
 
-    /// Where the scene keeps its checkpoints.
+    /// The checkpoints of the scene.
     const CheckpointStore checkpoints;
 
     /// Lock the directories, as far as they exist and are not locked yet.

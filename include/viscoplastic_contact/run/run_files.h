@@ -44,7 +44,7 @@ namespace Viscoplastic
       return directories.checkpoints;
     }
 
-    /// Where the results are; ends with a slash.
+    /// The directory of the results; ends with a slash.
     const std::string &
     directory() const
     {

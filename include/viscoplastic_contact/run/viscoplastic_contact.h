@@ -22,7 +22,8 @@
 
 namespace Viscoplastic
 {
-  /// What a run to a tolerance has to know before its first step.
+  /// The expected size of the solution and the number of steps, which a run to
+  /// a tolerance needs before its first step.
   struct Expectation
   {
     /// About how large the solution becomes, in the energy norm or by its

@@ -16,7 +16,8 @@
 
 namespace Viscoplastic
 {
-  /// What happens on one boundary id, with its data as functions of x and t.
+  /// The boundary condition of one boundary id, with its data as functions of x
+  /// and t.
   template <int dim>
   struct BoundaryCondition
   {
@@ -66,7 +67,8 @@ namespace Viscoplastic
     /// The factor of friction bounds as a function of the slip rate; absent
     /// where it is one.
     std::optional<Expression<1>> slip_rate_factor;
-    /// What makes the data, or null.
+    /// The exact solution from which the data are computed; null if they are
+    /// given.
     const ExactSolution<dim> *solution;
     /// Outward unit normal of a symmetry or contact piece, which is flat; in
     /// contact that opens that of the foundation, into which it points.

@@ -65,7 +65,8 @@ namespace Viscoplastic
     static constexpr double absent_stiffness = 1e-6;
 
     const std::string section;
-    /// What people are told: `Material/Name', or the section.
+    /// The name of the material in messages: `Material/Name', or the section of
+    /// its entries.
     const std::string name;
     const std::string law_name;
     /// Whether this stands for the material where it is absent.

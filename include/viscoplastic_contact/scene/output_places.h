@@ -32,7 +32,8 @@ namespace Viscoplastic
   };
 
 
-  /// What `Output/Integrals' asks for of a boundary, a material or the body.
+  /// One integral of `Output/Integrals', over a boundary, a material or the
+  /// body.
   struct OutputIntegral
   {
     enum class Domain

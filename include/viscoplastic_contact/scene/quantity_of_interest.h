@@ -27,7 +27,7 @@ namespace Viscoplastic
       axial_force
     };
 
-    /// In the place of an id: all boundaries together.
+    /// The id that stands for all boundaries together.
     static constexpr unsigned int all = numbers::invalid_unsigned_int;
 
     Kind kind;

@@ -23,9 +23,9 @@
 
 namespace Viscoplastic
 {
-  /// What is simulated: the body, its material, the roles of its boundary, the
-  /// loads and the time steps, as functions of x and t and free of any
-  /// discretization. The members that a scene does not need are empty.
+  /// The mathematical problem, free of any discretization: the body, its
+  /// materials, boundary conditions, loads and time interval, with data as
+  /// functions of x and t. The members that a scene does not need are empty.
   template <int dim>
   class Scene
   {
@@ -208,7 +208,7 @@ namespace Viscoplastic
     bool
     has_springs() const;
 
-    /// What the boundary or support with this id prescribes.
+    /// The condition on the boundary or support with this @p id.
     const BoundaryCondition<dim> &
     condition(const types::boundary_id id) const;
 
@@ -295,13 +295,13 @@ namespace Viscoplastic
     std::optional<Expression<dim>> axial_force, axial_strain;
     /// T; null in scenes that give none.
     std::unique_ptr<const Temperature<dim>> temperature;
-    /// What is recorded beside the fields, and where.
+    /// Points, lines and integrals at which fields are recorded.
     std::vector<Point<dim>>      output_points;
     std::vector<OutputLine<dim>> output_lines;
     std::vector<OutputIntegral>  output_integrals;
     /// The quantity of `Error control/Quantity'; absent if there is none.
     std::optional<QuantityOfInterest> quantity;
-    /// What is allowed but should be known, a sentence each.
+    /// Warnings: what is allowed but doubtful, one sentence each.
     std::vector<std::string> warnings;
     /// The times at which materials come or go, in ascending order.
     std::vector<double> stage_ends;

@@ -18,7 +18,7 @@ namespace Viscoplastic
   constexpr types::boundary_id first_support_id = largest_id + 1,
                                first_edge_id    = 2 * first_support_id;
 
-  /// What a boundary or a support is called in columns: `3', `point0', `edge1'.
+  /// The name of a boundary or a support in columns: `3', `point0', `edge1'.
   std::string
   name_in_columns(const types::boundary_id id);
 

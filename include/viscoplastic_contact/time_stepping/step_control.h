@@ -29,15 +29,14 @@ namespace Viscoplastic
   };
 
 
-  /// What a step that has been tried is judged by.
+  /// The error measures by which a tried step is accepted or rejected.
   struct StepErrors
   {
-    /// What the step adds to the error of the time integration, in the energy
-    /// norm.
+    /// The time error of this step, in the energy norm.
     double indicator = 0.;
-    /// What the solution moves in the step, and its size: in the same norm.
+    /// The change of the solution in the step and its size, in the same norm.
     double change = 0., size = 0.;
-    /// What earlier steps have left of the error of the time integration.
+    /// The time error accumulated in earlier steps.
     double before = 0.;
     /// The part of the indicator that comes at some times only: slip that comes
     /// to rest or turns, bounds that change, data that swing.
@@ -45,7 +44,7 @@ namespace Viscoplastic
   };
 
 
-  /// What the step control has done, for the closing words.
+  /// Numbers of accepted and rejected steps, for the closing words of a run.
   struct StepCounts
   {
     unsigned int rejected = 0, events = 0, failed = 0;
@@ -96,7 +95,8 @@ namespace Viscoplastic
                 const double                 output_interval,
                 const double                 tolerance_of_run = 0.);
 
-    /// That of a run. @p budget is null without a tolerance.
+    /// The step control of a run with these @p parameters. @p budget: null
+    /// without a tolerance.
     StepControl(const Parameters   &parameters,
                 const TimeSchedule &schedule,
                 const ErrorBudget  *budget);

@@ -33,8 +33,8 @@ namespace Viscoplastic
     virtual StepSolution<dim>
     equilibrate(const StepProblem<dim> &problem) = 0;
 
-    /// What the linear solver has learnt, at an accepted state. Nothing where
-    /// all solves are alike. Collective.
+    /// The state of the preconditioner at an accepted state, to be kept in
+    /// checkpoints; nothing if all solves are alike. Collective.
     virtual std::optional<PreconditionerState>
     preconditioner_state() const = 0;
 

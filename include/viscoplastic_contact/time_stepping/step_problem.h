@@ -30,8 +30,8 @@ namespace Viscoplastic
     /// rho_c(t_n) of each friction point, which make j_n, and the distance d_c
     /// to each obstacle.
     std::vector<double> bounds;
-    /// How far the foundation moves in the step, see ContactState; empty if no
-    /// foundation does.
+    /// The increment of the foundation's displacement at each point, see
+    /// ContactState::foundation_step; empty if no foundation moves.
     std::vector<Tensor<1, 2>> foundation_step;
     /// Relative to the solution, at which the iterations stop.
     double                  tolerance;
@@ -52,7 +52,8 @@ namespace Viscoplastic
     /// of all of them that does not depend on it.
     bool                bounds_follow_pressure = false;
     std::vector<double> given_bounds           = {};
-    /// At t_{n-1}, at which bounds depend on them; empty where none does.
+    /// Slip rates at t_{n-1}, on which friction bounds depend; empty if none
+    /// does.
     std::vector<double> slip_rates = {};
 
     /// How long a body may be expected to go on with the velocity of a state:
@@ -81,7 +82,7 @@ namespace Viscoplastic
 
 
 
-  /// What a step method reports of a step beside its end state.
+  /// The report of a step method on a step, beside its end state.
   struct StepOutcome
   {
     ContactReport report;
@@ -105,7 +106,7 @@ namespace Viscoplastic
 
 
 
-  /// What a scheme makes of a StepProblem.
+  /// The solution of a StepProblem by a time scheme.
   template <int dim>
   struct StepSolution : public StepOutcome
   {

@@ -52,8 +52,9 @@ namespace Viscoplastic
       return *bulk_solver;
     }
 
-    /// Where to start: u in frames, from the last displacement and what @p
-    /// guess says of velocities and sets, and these sets in @p contact.
+    /// The initial guess: u in nodal frames, extrapolated from the last
+    /// displacement with the velocity of @p guess, and the active sets of @p
+    /// guess in @p contact.
     DistributedVector
     initial_guess(const StepProblem<dim> &problem,
                   const State<dim>       &guess,

@@ -16,7 +16,7 @@ namespace Viscoplastic
     TimeStep time_step;
     /// The state that the step leads to.
     EvaluatedState<dim> end;
-    /// How often a longer step has been tried.
+    /// The number of longer steps that were tried and rejected.
     unsigned int n_rejections = 0;
 
     /// k r.

@@ -10,8 +10,8 @@ namespace Viscoplastic
 {
   using namespace dealii;
 
-  /// What a mesh file says, before it is a mesh: nodes, and the elements of
-  /// highest dimension (cells) and one below (faces), with their ids.
+  /// The contents of a mesh file: nodes, and the elements of highest dimension
+  /// (cells) and of one below (faces), with their ids.
   struct MeshFile
   {
     /// A quadrilateral or hexahedron; a line or quadrilateral as a face.

@@ -39,6 +39,30 @@ namespace Viscoplastic
 
 
 
+    /// How far rates differ, relative to the first ones: int |G' - G|/int |G|.
+    /// Collective.
+    template <int dim>
+    double
+    change(const StressSpace<dim>   &stress_space,
+           const IrreversibleStress &from,
+           const IrreversibleStress &to)
+    {
+      double      sums[] = {0., 0.};
+      std::size_t i      = 0;
+      for (std::size_t c = 0; c < stress_space.n_cells(); ++c)
+        for (unsigned int s = 0; s < stress_space.n_samples; ++s, ++i)
+          {
+            sums[0] += stress_space.weight(c, s) * (to[i] - from[i]).norm();
+            sums[1] += stress_space.weight(c, s) * from[i].norm();
+          }
+      Utilities::MPI::sum(ArrayView<const double>(sums),
+                          stress_space.space.communicator,
+                          ArrayView<double>(sums));
+      return sums[0] > 0. ? sums[0] / sums[1] : 0.;
+    }
+
+
+
     /// a(e_u, e_w) by active cell, of recovered strains.
     template <int dim>
     Vector<double>
@@ -88,19 +112,31 @@ namespace Viscoplastic
   template <int dim>
   Vector<double>
   QuantityEstimator<dim>::products_of_creep(const State<dim> &state,
-                                            const double      relaxation_rate,
+                                            const FlowRate   &rate,
                                             const double      creep_time,
                                             const CoulombLaw *law,
                                             Vector<double>   &sides) const
   {
+    const StressSpace<dim> &stress_space = discretization.stress_space;
+    const unsigned int      n            = stress_space.n_samples;
     // After a thousand relaxation times the body is as good as incompressible.
     // To half a power of two, so that linear laws have few matrices.
-    const double longest = 1e3 / relaxation_rate,
+    const double longest = 1e3 / rate.relaxation_rate,
                  time    = std::min(creep_time, std::max(state.t, longest)),
                  k       = std::exp2(
                    0.5 * std::floor(2. * std::log2(std::min(time, longest))));
-    const auto now    = discretization.laws.at(state.t, state.history);
-    const bool is_new = tangent->linearize(state.u, state.z, now, k);
+    const auto now = discretization.laws.at(state.t, state.history);
+    // What rates have changed since the last tangents is in the remainder.
+    bool is_new = false;
+    if (k != linearized_step ||
+        (!tangent->is_constant &&
+         change(stress_space, linearized_rate, rate.rate) > largest_change))
+      {
+        linearized_step = 0.; // until there are tangents
+        is_new          = tangent->linearize(state.u, state.z, now, k);
+        linearized_step = k;
+        linearized_rate = rate.rate;
+      }
     const DualSolution<dim> dual =
       dual_problem.solve(solver_of_tangents(*tangent, is_new),
                          tangent->matrix(),
@@ -108,8 +144,6 @@ namespace Viscoplastic
                          law);
     typename RecoveryEstimator<dim>::Linearization linearization{
       tangent->at_samples(), k / time, {}};
-    const StressSpace<dim> &stress_space = discretization.stress_space;
-    const unsigned int      n            = stress_space.n_samples;
     std::vector<SymmetricTensor<2, 3>> strains(n);
     std::size_t strained_cell = numbers::invalid_size_type; // whose strains
     if (!tangent->is_constant)
@@ -389,11 +423,8 @@ namespace Viscoplastic
             if (creeps)
               {
                 Vector<double> crept;
-                indicators = products_of_creep(state,
-                                               end.rate->relaxation_rate,
-                                               errors.creep_time,
-                                               linearized,
-                                               crept);
+                indicators = products_of_creep(
+                  state, *end.rate, errors.creep_time, linearized, crept);
                 if (const double size = size_of(crept); size > boundary)
                   {
                     boundary = size;

@@ -567,8 +567,8 @@ namespace Viscoplastic
                 if (n_samples > 1 && !z.empty())
                   product -= z[c * n_samples + s] * delta_w[q] / law.share;
                 if (law.remainder)
-                  product -=
-                    law.remainder(c, s, of_step) * (C * strains[q]) / law.share;
+                  product -= law.remainder(c, s, -1. * of_step) *
+                             (C * strains[q]) / law.share;
                 products[c] += weights[q] * product;
               }
           }

@@ -66,6 +66,8 @@ namespace Viscoplastic
           const ViscoplasticLaw *law = now.law(c);
           const bool             flows =
             at_points && law != nullptr && law->deviatoric_flow();
+          double       largest = 0.; // pressure
+          unsigned int at      = 0;
           for (unsigned int q = 0; q < strains.size(); ++q)
             {
               const double excess = trace(strains[q]) - mean_trace;
@@ -77,19 +79,25 @@ namespace Viscoplastic
                   (trace(state.z[c * stress_space.n_samples + q]) - mean_z) /
                   3.;
               squares[c] += weights[q] * pressure * pressure / two_mu;
-              if (!flows)
-                continue;
-              const auto tangents =
-                law->tangents(stiffness.stress(strains[q]) +
-                                state.z[c * stress_space.n_samples + q],
-                              now.mechanical(strains[q], c, q),
-                              stiffness,
-                              now.point(c, q));
-              for (const SymmetricTensor<2, 3> &deviator : deviators)
-                rate += weights[q] * pressure * pressure / deviators.size() *
-                        stiffness.complementary_square(
-                          SymmetricTensor<2, 3>(tangents.stress * deviator));
+              if (std::abs(pressure) > largest)
+                {
+                  largest = std::abs(pressure);
+                  at      = q;
+                }
             }
+          if (!flows || squares[c] == 0.)
+            continue;
+          // Tangents cost more than all the rest: those of one point.
+          const auto tangents =
+            law->tangents(stiffness.stress(strains[at]) +
+                            state.z[c * stress_space.n_samples + at],
+                          now.mechanical(strains[at], c, at),
+                          stiffness,
+                          now.point(c, at));
+          for (const SymmetricTensor<2, 3> &deviator : deviators)
+            rate += squares[c] * two_mu / deviators.size() *
+                    stiffness.complementary_square(
+                      SymmetricTensor<2, 3>(tangents.stress * deviator));
         }
     });
     rate             = Utilities::MPI::sum(rate, communicator);

@@ -446,9 +446,7 @@ namespace Viscoplastic
   {
     if (!tangent_solver)
       tangent_solver = std::make_unique<StepSolver<dim>>(discretization);
-    // A preconditioner that has seen other solves is no function of the state.
-    if (is_new || !tangent_solver->is_ready() ||
-        !tangent_solver->bulk().is_exact())
+    if (is_new || !tangent_solver->is_ready())
       tangent_solver->set_matrix(tangent.matrix(),
                                  tangent.max_poissons_ratio());
     return tangent_solver->bulk();

@@ -29,7 +29,7 @@ class Job:
     """A scene in a directory of its own, to be run several times."""
 
     def __init__(self, scene, overrides=None, copy_of=None):
-        self.work = Path(tempfile.mkdtemp(prefix=f"restart_{scene}_"))
+        self.work = Path(tempfile.mkdtemp(prefix=f"restart_{Path(scene).name}_"))
         self.results = self.work / "results"
         self.checkpoints = self.results / "checkpoint"
         self.scene = scene
@@ -44,7 +44,7 @@ class Job:
         shutil.rmtree(self.work, ignore_errors=True)
 
     def arguments(self, *options, **overrides):
-        file = self.work / f"{self.scene}.prm"
+        file = self.work / f"{Path(self.scene).name}.prm"
         file.write_text(scene_file(self.scene).read_text())
         variant = self.work / "overrides.prm"
         variant.write_text(

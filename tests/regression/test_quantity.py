@@ -532,6 +532,39 @@ class LongCreep(TestCase):
         self.assertLess(len(result["t"]), 200)
 
 
+class KeptTangents(TestCase):
+    """Tangents of creep serve while rates change by no more than a tenth; a checkpoint
+    lets the next step take its own."""
+
+    SCENE = {
+        **of("point0_x"),
+        "Geometry/Global refinements": 2,
+        "Time/Scheme": "backward Euler",
+        "Time/Phases": "0.001: 10, 0.01: 20",
+        "Output/Fields every": 0,
+        "Checkpoint/Every n steps": 8,
+    }
+
+    def test_estimate(self):
+        with Job("hard/norton_cylinder", self.SCENE) as job:
+            result = job.run()
+            kept = result["quantity_space"][1:]
+            rows = without_wall_times(result.directory / "statistics.csv")
+            with Job("hard/norton_cylinder", self.SCENE, copy_of=job) as again:
+                again.forget_after(job.steps()[0])
+                result = again.run("--restart")
+                self.assertEqual(
+                    without_wall_times(result.directory / "statistics.csv"), rows
+                )
+        anew = run("hard/norton_cylinder", {**self.SCENE, **EVERY_STEP})
+        quotient = kept / anew["quantity_space"][1:]
+        # measured: 1 to 1.003, and 20 of 30 steps that are not the same
+        self.assertLess(np.abs(quotient - 1).max(), 0.01)
+        self.assertGreater((np.abs(quotient - 1) > 1e-10).mean(), 0.3)
+        several = run("hard/norton_cylinder", self.SCENE, ranks=3)["quantity_space"]
+        self.assertClose(several[1:], kept, 1e-5)
+
+
 class PointInCreep(TestCase):
     """A point of a body that creeps adds up what the mesh makes wrong of its rates:
     at 1 (norton), 10, 100 and 1000 relaxation times against a mesh four times as fine

@@ -33,7 +33,7 @@ namespace Viscoplastic
   ///   solution w_h of the dual problem of C, so that
   ///
   ///       |J(u) - J(u_h)| = |int (S(eps(u)) - S(eps(u_h))) : eps(w_h)|
-  ///                       = |int (e_u : C e_w - r(e_u) : C eps(w_h))|
+  ///                       = |int (e_u : C e_w - r(-e_u) : C eps(w_h))|
   ///
   ///   with the remainder r of RecoveryEstimator::multiply(); points likewise.
   ///   The larger of this and of a(e_u, e_w) counts. T is t under steady loads,
@@ -84,6 +84,8 @@ namespace Viscoplastic
     /// In bodies that creep, the least ratio of the estimate to the sum of
     /// absolute contributions: cancellation beyond that is not trusted.
     static constexpr double least_share = 0.25;
+    /// Tangents of creep are those of rates that differ by no more than this.
+    static constexpr double largest_change = 0.1;
 
     /// A solver for the matrix of tangents, until the next one is asked for,
     /// and whether that is another matrix than the last time.
@@ -109,6 +111,15 @@ namespace Viscoplastic
            const EvaluatedState<dim> &accepted,
            EvaluatedState<dim>       &end) const;
 
+    /// Take new tangents in the next step, as a run that begins here does.
+    void
+    forget() const
+    {
+      linearized_step = 0.;
+      if (tangent)
+        tangent->forget();
+    }
+
   private:
     /// Coulomb's law of the pressure of the step to @p state, whose slip rates
     /// are those of @p old; none if bounds are given. Collective.
@@ -130,7 +141,7 @@ namespace Viscoplastic
     /// sides with the dual solution of creep. Collective.
     Vector<double>
     products_of_creep(const State<dim> &state,
-                      const double      relaxation_rate,
+                      const FlowRate   &rate,
                       const double      creep_time,
                       const CoulombLaw *law,
                       Vector<double>   &sides) const;
@@ -155,7 +166,10 @@ namespace Viscoplastic
     const TangentSolver        solver_of_tangents;
     const DualProblem<dim>     dual_problem;
     const BoundaryDefects<dim> boundary_defects;
-    /// Of creep; null if nothing creeps.
+    /// Of creep, with the step and rates that they are of; null if nothing
+    /// creeps.
     std::unique_ptr<TangentMatrix<dim>> tangent;
+    mutable double                      linearized_step = 0.;
+    mutable IrreversibleStress          linearized_rate;
   };
 } // namespace Viscoplastic

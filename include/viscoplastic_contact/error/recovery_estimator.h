@@ -66,13 +66,14 @@ namespace Viscoplastic
     /// errors of a displacement and a dual solution with their signs; arguments
     /// and result as of estimate().
     ///
-    ///     int e_u : C e_w - int r(e_u) : C eps(w_h)
+    ///     int e_u : C e_w - int r(-e_u) : C eps(w_h)
     ///
     /// since u_h solves the equations of the law and not those of its tangents:
     /// its error is a-orthogonal to w_h but for the remainder r of the law,
-    /// which is of the order of the first term. Its sign is that of tangents at
-    /// the solution u, not at u_h: they are smooth, and so is the w that eps*
-    /// of w_h is close to.
+    /// which is of the order of the first term. It is that of the way back,
+    /// with tangents at the solution u, not at u_h: they are smooth, and so is
+    /// the w that eps* of w_h is close to. What tangents of another state miss
+    /// is in it, too.
     ///
     /// Signs leave little of the sum, so that two things count here that do not
     /// in squares. Means at a boundary miss half of what a strain varies by in

@@ -35,7 +35,8 @@ namespace Viscoplastic
   /// in the energy norm, where h'/L is what deviators of strains vary by in
   /// cells relative to their size, as recovered strains tell (@p defect, the
   /// squared energy of their deviators' errors). Flow makes of p in each unit
-  /// of time as much as a deviator s of its size, G'(sigma) s. Collective.
+  /// of time as much as a deviator s of its size, G'(sigma) s, with the
+  /// tangents where it is largest in the cell. Collective.
   template <int dim>
   VolumetricLocking
   volumetric_locking(const LocalCells<dim> &cells,

@@ -84,6 +84,15 @@ namespace Viscoplastic
     void
     estimate_quantity(EvaluatedState<dim> &initial);
 
+    /// Let the estimate of a quantity keep no tangents that a run which begins
+    /// with this state does not have.
+    void
+    forget_tangents() const
+    {
+      if (quantity_estimator)
+        quantity_estimator->forget();
+    }
+
     /// Whether steps of this scene ask for G at the state that they start from.
     bool
     needs_rate() const;

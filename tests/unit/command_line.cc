@@ -65,7 +65,8 @@ namespace
     };
     refused({"--chek", "a.prm"},
             "There is no option '--chek'; did you mean --check?");
-    refused({"-x", "a.prm"}, "There is no option '-x'; the options are --check");
+    refused({"-x", "a.prm"},
+            "There is no option '-x'; the options are --check");
     refused({"a.prm", "--set"}, "--set needs 'Section/Entry=value' after it.");
     refused({"a.prm", "--log"}, "--log needs the name of a file after it.");
     refused({"--log", "a.prm", "b.prm"}, "would overwrite 'a.prm'");

@@ -192,9 +192,9 @@ namespace
         case CommandLine::Task::describe:
           return describe_parameters(command_line.files,
                                      command_line.overrides);
-        case CommandLine::Task::describe_as_markdown:
-          return describe_parameters_as_markdown(command_line.files,
-                                                 command_line.overrides);
+        case CommandLine::Task::describe_as_json:
+          return describe_parameters_as_json(command_line.files,
+                                             command_line.overrides);
         default:
           return "";
       }

@@ -3,6 +3,7 @@
 #include <deal.II/dofs/dof_tools.h>
 #include <deal.II/lac/trilinos_sparsity_pattern.h>
 
+#include <viscoplastic_contact/base/instantiate_member.h>
 #include <viscoplastic_contact/discretization/admissible_space.h>
 
 // The part of AdmissibleSpace that assembles matrices in frames.
@@ -132,28 +133,7 @@ namespace Viscoplastic
 
 
 
-  template void
-  AdmissibleSpace<2>::make_sparsity_pattern(
-    TrilinosWrappers::SparsityPattern &) const;
-  template void
-  AdmissibleSpace<2>::get_dofs(
-    const typename DoFHandler<2>::active_cell_iterator &,
-    std::vector<types::global_dof_index> &) const;
-  template void
-  AdmissibleSpace<2>::add_cell_matrix(
-    const std::vector<types::global_dof_index> &,
-    FullMatrix<double> &,
-    DistributedMatrix &) const;
-  template void
-  AdmissibleSpace<3>::make_sparsity_pattern(
-    TrilinosWrappers::SparsityPattern &) const;
-  template void
-  AdmissibleSpace<3>::get_dofs(
-    const typename DoFHandler<3>::active_cell_iterator &,
-    std::vector<types::global_dof_index> &) const;
-  template void
-  AdmissibleSpace<3>::add_cell_matrix(
-    const std::vector<types::global_dof_index> &,
-    FullMatrix<double> &,
-    DistributedMatrix &) const;
+  VISCOPLASTIC_INSTANTIATE_MEMBER(AdmissibleSpace, make_sparsity_pattern);
+  VISCOPLASTIC_INSTANTIATE_MEMBER(AdmissibleSpace, get_dofs);
+  VISCOPLASTIC_INSTANTIATE_MEMBER(AdmissibleSpace, add_cell_matrix);
 } // namespace Viscoplastic

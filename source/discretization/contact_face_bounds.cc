@@ -2,6 +2,7 @@
 #include <deal.II/base/mpi.h>
 #include <deal.II/lac/la_parallel_vector.h>
 
+#include <viscoplastic_contact/base/instantiate_member.h>
 #include <viscoplastic_contact/discretization/contact_face.h>
 
 #include <algorithm>
@@ -263,29 +264,11 @@ namespace Viscoplastic
 
 
 
-#define INSTANTIATE(dim)                                                   \
-  template std::vector<double> ContactFace<dim>::bounds(                   \
-    const double, const std::vector<double> &) const;                      \
-  template std::vector<double> ContactFace<dim>::step_bounds(              \
-    const double, const DistributedVector &, const std::vector<double> &)  \
-    const;                                                                 \
-  template void ContactFace<dim>::set_obstacles(const double,              \
-                                                const DistributedVector &, \
-                                                ContactState &) const;     \
-  template ContactFace<dim>::MissedBounds ContactFace<dim>::missed_bounds( \
-    const State<dim> &) const;                                             \
-  template bool ContactFace<dim>::closes_between_nodes(                    \
-    const double, const DistributedVector &) const;                        \
-  template void ContactFace<dim>::add_computed_bounds(                     \
-    const double,                                                          \
-    const ContactState &,                                                  \
-    std::vector<double> &,                                                 \
-    const std::vector<double> &) const;                                    \
-  template std::vector<std::vector<double>>                                \
-  ContactFace<dim>::bounds_of_pressure(const double,                       \
-                                       const std::vector<double> &) const;
-
-  INSTANTIATE(2)
-  INSTANTIATE(3)
-#undef INSTANTIATE
+  VISCOPLASTIC_INSTANTIATE_MEMBER(ContactFace, bounds);
+  VISCOPLASTIC_INSTANTIATE_MEMBER(ContactFace, step_bounds);
+  VISCOPLASTIC_INSTANTIATE_MEMBER(ContactFace, set_obstacles);
+  VISCOPLASTIC_INSTANTIATE_MEMBER(ContactFace, missed_bounds);
+  VISCOPLASTIC_INSTANTIATE_MEMBER(ContactFace, closes_between_nodes);
+  VISCOPLASTIC_INSTANTIATE_MEMBER(ContactFace, add_computed_bounds);
+  VISCOPLASTIC_INSTANTIATE_MEMBER(ContactFace, bounds_of_pressure);
 } // namespace Viscoplastic

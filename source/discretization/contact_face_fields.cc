@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <deal.II/base/mpi.h>
 
+#include <viscoplastic_contact/base/instantiate_member.h>
 #include <viscoplastic_contact/base/number_range.h>
 #include <viscoplastic_contact/discretization/contact_face.h>
 
@@ -247,30 +248,13 @@ namespace Viscoplastic
 
 
 
-#define INSTANTIATE(dim)                                                     \
-  template Tensor<1, dim> ContactFace<dim>::cartesian(const unsigned int,    \
-                                                      const Tensor<1, 2> &)  \
-    const;                                                                   \
-  template Tensor<1, dim> ContactFace<dim>::resultant(const ContactState &,  \
-                                                      const bool) const;     \
-  template std::map<types::boundary_id,                                      \
-                    typename ContactFace<dim>::BoundaryForces>               \
-  ContactFace<dim>::forces_by_boundary(const ContactState &) const;          \
-  template Tensor<1, dim> ContactFace<dim>::resultant_on_foundations(        \
-    const ContactState &) const;                                             \
-  template std::vector<Tensor<1, 2>> ContactFace<dim>::slips(                \
-    const DistributedVector &, const std::vector<Tensor<1, 2>> &) const;     \
-  template std::vector<double> ContactFace<dim>::slip_rates(                 \
-    const DistributedVector &, const double, const double) const;            \
-  template DistributedVector ContactFace<dim>::density(const ContactState &, \
-                                                       const bool) const;    \
-  template std::vector<Tensor<1, 2>> ContactFace<dim>::multipliers(          \
-    const DistributedVector &) const;                                        \
-  template DistributedVector ContactFace<dim>::nodal_field(                  \
-    const std::vector<double> &, const bool) const;
-
-  INSTANTIATE(2)
-  INSTANTIATE(3)
-
-#undef INSTANTIATE
+  VISCOPLASTIC_INSTANTIATE_MEMBER(ContactFace, cartesian);
+  VISCOPLASTIC_INSTANTIATE_MEMBER(ContactFace, resultant);
+  VISCOPLASTIC_INSTANTIATE_MEMBER(ContactFace, forces_by_boundary);
+  VISCOPLASTIC_INSTANTIATE_MEMBER(ContactFace, resultant_on_foundations);
+  VISCOPLASTIC_INSTANTIATE_MEMBER(ContactFace, slips);
+  VISCOPLASTIC_INSTANTIATE_MEMBER(ContactFace, slip_rates);
+  VISCOPLASTIC_INSTANTIATE_MEMBER(ContactFace, density);
+  VISCOPLASTIC_INSTANTIATE_MEMBER(ContactFace, multipliers);
+  VISCOPLASTIC_INSTANTIATE_MEMBER(ContactFace, nodal_field);
 } // namespace Viscoplastic

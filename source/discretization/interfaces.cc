@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <viscoplastic_contact/base/instantiate_member.h>
 #include <viscoplastic_contact/discretization/admissible_space.h>
 
 #include <map>
@@ -170,34 +171,9 @@ namespace Viscoplastic
 
 
 
-  template void
-  AdmissibleSpace<2>::make_couplings();
-  template void
-  AdmissibleSpace<2>::make_relative(DistributedVector &) const;
-  template void
-  AdmissibleSpace<2>::add_opposite(const double,
-                                   const DistributedVector &,
-                                   DistributedVector &,
-                                   const bool) const;
-  template bool
-  AdmissibleSpace<2>::is_coupled(
-    const std::vector<types::global_dof_index> &) const;
-  template void
-  AdmissibleSpace<2>::couple(std::vector<types::global_dof_index> &,
-                             FullMatrix<double> &) const;
-  template void
-  AdmissibleSpace<3>::make_couplings();
-  template void
-  AdmissibleSpace<3>::make_relative(DistributedVector &) const;
-  template void
-  AdmissibleSpace<3>::add_opposite(const double,
-                                   const DistributedVector &,
-                                   DistributedVector &,
-                                   const bool) const;
-  template bool
-  AdmissibleSpace<3>::is_coupled(
-    const std::vector<types::global_dof_index> &) const;
-  template void
-  AdmissibleSpace<3>::couple(std::vector<types::global_dof_index> &,
-                             FullMatrix<double> &) const;
+  VISCOPLASTIC_INSTANTIATE_MEMBER(AdmissibleSpace, make_couplings);
+  VISCOPLASTIC_INSTANTIATE_MEMBER(AdmissibleSpace, make_relative);
+  VISCOPLASTIC_INSTANTIATE_MEMBER(AdmissibleSpace, add_opposite);
+  VISCOPLASTIC_INSTANTIATE_MEMBER(AdmissibleSpace, is_coupled);
+  VISCOPLASTIC_INSTANTIATE_MEMBER(AdmissibleSpace, couple);
 } // namespace Viscoplastic

@@ -3,6 +3,7 @@
 #include <deal.II/base/quadrature_lib.h>
 #include <deal.II/fe/fe_values.h>
 
+#include <viscoplastic_contact/base/instantiate_member.h>
 #include <viscoplastic_contact/discretization/admissible_space.h>
 #include <viscoplastic_contact/discretization/body_parts.h>
 #include <viscoplastic_contact/discretization/seen_motions.h>
@@ -356,30 +357,10 @@ namespace Viscoplastic
 
 
 
-  template void
-  AdmissibleSpace<2>::check_rigid_motions();
-  template void
-  AdmissibleSpace<3>::check_rigid_motions();
-  template Point<2>
-  AdmissibleSpace<2>::center() const;
-  template Point<3>
-  AdmissibleSpace<3>::center() const;
-  template DistributedVector
-  AdmissibleSpace<2>::rigid_motion(const unsigned int,
-                                   const unsigned int) const;
-  template DistributedVector
-  AdmissibleSpace<3>::rigid_motion(const unsigned int,
-                                   const unsigned int) const;
-  template std::vector<DistributedVector>
-  AdmissibleSpace<2>::rigid_body_modes() const;
-  template std::vector<DistributedVector>
-  AdmissibleSpace<3>::rigid_body_modes() const;
-  template std::vector<DistributedVector>
-  AdmissibleSpace<2>::motions_held_by_contact() const;
-  template std::vector<DistributedVector>
-  AdmissibleSpace<3>::motions_held_by_contact() const;
-  template std::string
-  AdmissibleSpace<2>::name_of_motion(const std::vector<double> &) const;
-  template std::string
-  AdmissibleSpace<3>::name_of_motion(const std::vector<double> &) const;
+  VISCOPLASTIC_INSTANTIATE_MEMBER(AdmissibleSpace, check_rigid_motions);
+  VISCOPLASTIC_INSTANTIATE_MEMBER(AdmissibleSpace, center);
+  VISCOPLASTIC_INSTANTIATE_MEMBER(AdmissibleSpace, rigid_motion);
+  VISCOPLASTIC_INSTANTIATE_MEMBER(AdmissibleSpace, rigid_body_modes);
+  VISCOPLASTIC_INSTANTIATE_MEMBER(AdmissibleSpace, motions_held_by_contact);
+  VISCOPLASTIC_INSTANTIATE_MEMBER(AdmissibleSpace, name_of_motion);
 } // namespace Viscoplastic

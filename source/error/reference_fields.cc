@@ -16,19 +16,7 @@ namespace Viscoplastic
 
     /// Begins a file of samples, and says of which dimension and version.
     template <int dim>
-    constexpr double magic_number = 7.26e9 + dim;
-
-
-
-    template <int dim, typename Sample>
-    Point<dim>
-    position(const Sample &sample)
-    {
-      Point<dim> x;
-      for (unsigned int d = 0; d < dim; ++d)
-        x[d] = sample[d];
-      return x;
-    }
+    constexpr double magic_number = 7.27e9 + dim;
 
 
 
@@ -43,7 +31,7 @@ namespace Viscoplastic
     {
       std::vector<Point<dim>> points;
       for (const Sample &sample : samples)
-        points.push_back(position<dim>(sample));
+        points.push_back(sample.x);
       Utilities::MPI::RemotePointEvaluation<dim> remote(
         1e-6, /* enforce_unique_mapping = */ true);
       const MappingQ1<dim> mapping;
@@ -127,7 +115,6 @@ namespace Viscoplastic
               SolutionNorms           &error,
               SolutionNorms           &norm)
     {
-      using Samples           = FieldSamples<dim>;
       const auto &dof_handler = stress_space.space.dof_handler;
       const auto  stress      = stress_space.mean_stress(state.u, state.z);
       std::vector<unsigned int> owned_index(
@@ -158,43 +145,29 @@ namespace Viscoplastic
           here[displacement].get_function_gradients(state.u, gradients);
           for (unsigned int q = 0; q < points.size(); ++q)
             {
-              const auto    &sample = samples[q];
-              const double   w      = sample[dim];
-              Tensor<1, dim> u;
-              Tensor<2, dim> g;
-              for (unsigned int d = 0; d < dim; ++d)
-                {
-                  u[d] = sample[Samples::u_index + d];
-                  for (unsigned int e = 0; e < dim; ++e)
-                    g[d][e] = sample[Samples::gradient_index + d * dim + e];
-                }
-              auto exact = strain(g, sample[Samples::zz_index]),
-                   ours  = strain(values[q],
+              const auto  &sample = samples[q];
+              const double w      = sample.weight;
+              auto         exact  = strain(sample.gradient, sample.strain_zz),
+                   ours           = strain(values[q],
                                  gradients[q],
-                                 position<dim>(sample),
+                                 sample.x,
                                  space.scene.plane_model(),
                                  space.axial_strain(state.u.begin()));
               if (stress_space.mean_dilatation)
                 {
-                  exact =
-                    with_dilatation(exact, sample[Samples::dilatation_index]);
-                  ours = with_dilatation(ours, dilatation);
+                  exact = with_dilatation(exact, sample.dilatation);
+                  ours  = with_dilatation(ours, dilatation);
                 }
               const auto defect = exact - ours;
               error.energy += w * (stiffness.stress(defect) * defect);
               norm.energy += w * (stiffness.stress(exact) * exact);
-              error.h1 += w * ((u - values[q]).norm_square() +
-                               (g - gradients[q]).norm_square());
-              norm.h1 += w * (u.norm_square() + g.norm_square());
-
-              SymmetricTensor<2, 3> sigma;
-              const auto            components = stress_components<dim>();
-              for (unsigned int c = 0; c < components.size(); ++c)
-                sigma[components[c].first][components[c].second] =
-                  sample[Samples::stress_index + c];
-              const auto difference = sigma - stress[i];
+              error.h1 += w * ((sample.u - values[q]).norm_square() +
+                               (sample.gradient - gradients[q]).norm_square());
+              norm.h1 +=
+                w * (sample.u.norm_square() + sample.gradient.norm_square());
+              const auto difference = sample.stress - stress[i];
               error.stress += w * (difference * difference);
-              norm.stress += w * (sigma * sigma);
+              norm.stress += w * (sample.stress * sample.stress);
             }
         });
     }
@@ -223,50 +196,23 @@ namespace Viscoplastic
           here[displacement].get_function_values(density, multiplier);
           for (unsigned int q = 0; q < points.size(); ++q)
             {
-              Tensor<1, dim> lambda;
-              for (unsigned int d = 0; d < dim; ++d)
-                lambda[d] = samples[q][FieldSamples<dim>::multiplier_index + d];
+              const auto &[x, weight, lambda] = samples[q];
               error.multiplier +=
-                (lambda - multiplier[q]).norm_square() * samples[q][dim];
-              norm.multiplier += lambda.norm_square() * samples[q][dim];
+                (lambda - multiplier[q]).norm_square() * weight;
+              norm.multiplier += lambda.norm_square() * weight;
             }
         });
     }
 
 
 
-    template <std::size_t n>
-    void
-    append(const std::vector<std::array<double, n>> &rows,
-           std::vector<double>                      &numbers)
-    {
-      for (const auto &row : rows)
-        numbers.insert(numbers.end(), row.begin(), row.end());
-    }
-
-
-
-    template <std::size_t n>
-    bool
-    split(const std::vector<double>          &numbers,
-          std::vector<std::array<double, n>> &rows)
-    {
-      for (std::size_t i = 0; i + n <= numbers.size(); i += n)
-        {
-          rows.emplace_back();
-          std::copy_n(numbers.begin() + i, n, rows.back().begin());
-        }
-      return numbers.size() % n == 0;
-    }
-
-
-
     /// What all ranks have, in the order of ranks, on rank 0.
-    std::vector<double>
-    gather(const std::vector<double> &numbers, const MPI_Comm communicator)
+    template <typename Sample>
+    std::vector<Sample>
+    gather(const std::vector<Sample> &samples, const MPI_Comm communicator)
     {
-      std::vector<double> result;
-      for (const auto &part : Utilities::MPI::gather(communicator, numbers))
+      std::vector<Sample> result;
+      for (const auto &part : Utilities::MPI::gather(communicator, samples))
         result.insert(result.end(), part.begin(), part.end());
       return result;
     }
@@ -291,10 +237,9 @@ namespace Viscoplastic
                 const State<dim>        &state,
                 const DistributedVector *multiplier_density)
   {
-    using Samples           = FieldSamples<dim>;
-    const auto &space       = stress_space.space;
-    const auto &dof_handler = space.dof_handler;
-    Samples     result;
+    const auto       &space       = stress_space.space;
+    const auto       &dof_handler = space.dof_handler;
+    FieldSamples<dim> result;
     result.t = state.t;
     FEValues<dim>               fe_values(space.mapping,
                             dof_handler.get_fe(),
@@ -310,8 +255,7 @@ namespace Viscoplastic
     std::vector<Tensor<1, dim>> values(fe_values.n_quadrature_points);
     std::vector<Tensor<2, dim>> gradients(fe_values.n_quadrature_points);
     std::vector<Tensor<1, dim>> lambda(face_values.n_quadrature_points);
-    const auto stress     = stress_space.mean_stress(state.u, state.z);
-    const auto components = stress_components<dim>();
+    const auto stress = stress_space.mean_stress(state.u, state.z);
 
     std::size_t index = 0;
     for (const auto &cell : stress_space.space.cells)
@@ -328,25 +272,13 @@ namespace Viscoplastic
         const double dilatation = stress_space.mean_dilatation ?
                                     mean_dilatation(cell, state.u) :
                                     trace(at_center);
-        for (const unsigned int q : fe_values.quadrature_point_indices())
-          {
-            typename Samples::CellPoint sample;
-            sample[dim]                       = fe_values.JxW(q);
-            sample[Samples::dilatation_index] = dilatation;
-            sample[Samples::zz_index]         = at_center[2][2];
-            for (unsigned int d = 0; d < dim; ++d)
-              {
-                sample[d]                    = fe_values.quadrature_point(q)[d];
-                sample[Samples::u_index + d] = values[q][d];
-                for (unsigned int e = 0; e < dim; ++e)
-                  sample[Samples::gradient_index + d * dim + e] =
-                    gradients[q][d][e];
-              }
-            for (unsigned int c = 0; c < components.size(); ++c)
-              sample[Samples::stress_index + c] =
-                stress[index][components[c].first][components[c].second];
-            result.cells.push_back(sample);
-          }
+        result.cells.push_back({fe_values.quadrature_point(0),
+                                fe_values.JxW(0),
+                                values[0],
+                                gradients[0],
+                                dilatation,
+                                at_center[2][2],
+                                stress[index]});
         ++index;
 
         for (const unsigned int f : cell->face_indices())
@@ -360,16 +292,9 @@ namespace Viscoplastic
             face_values[displacement].get_function_values(*multiplier_density,
                                                           lambda);
             for (const unsigned int q : face_values.quadrature_point_indices())
-              {
-                typename Samples::FacePoint sample;
-                sample[dim] = face_values.JxW(q);
-                for (unsigned int d = 0; d < dim; ++d)
-                  {
-                    sample[d] = face_values.quadrature_point(q)[d];
-                    sample[Samples::multiplier_index + d] = lambda[q][d];
-                  }
-                result.faces.push_back(sample);
-              }
+              result.faces.push_back({face_values.quadrature_point(q),
+                                      face_values.JxW(q),
+                                      lambda[q]});
           }
       }
     return result;
@@ -383,11 +308,8 @@ namespace Viscoplastic
                 const std::string       &file,
                 const MPI_Comm           communicator)
   {
-    std::vector<double> cells, faces;
-    append(samples.cells, cells);
-    append(samples.faces, faces);
-    cells = gather(cells, communicator);
-    faces = gather(faces, communicator);
+    const auto  cells = gather(samples.cells, communicator);
+    const auto  faces = gather(samples.faces, communicator);
     std::string complaint;
     if (Utilities::MPI::this_mpi_process(communicator) == 0)
       {
@@ -420,13 +342,12 @@ namespace Viscoplastic
           {
             if (const auto bytes = read_file_if_any(file))
               {
-                BinaryReader        archive(*bytes);
-                double              magic = 0.;
-                std::vector<double> cells, faces;
-                archive &magic &result.t &cells &faces;
-                is_good = magic == magic_number<dim> && archive.is_at_end() &&
-                          split(cells, result.cells) &&
-                          split(faces, result.faces);
+                BinaryReader archive(*bytes);
+                double       magic = 0.;
+                archive     &magic;
+                if (magic == magic_number<dim>)
+                  archive &result.t &result.cells &result.faces;
+                is_good = magic == magic_number<dim> && archive.is_at_end();
               }
           }
         catch (const std::exception &)

@@ -7,7 +7,6 @@
 #include <viscoplastic_contact/parameters/parameter_tree.h>
 #include <viscoplastic_contact/parameters/wrong_lines.h>
 
-#include <cctype>
 #include <map>
 #include <set>
 #include <sstream>
@@ -79,29 +78,15 @@ namespace Viscoplastic
 
 
 
-    /// The words of a text in lines of at most @p width characters, the first
-    /// of which begins with @p first and the others with @p indent.
+    /// The words of a text in lines that begin with @p margin.
     std::string
-    wrap(const std::string &text,
-         const std::string &first,
-         const std::string &indent,
-         const std::size_t  width)
+    wrap(const std::string &text, const std::string &margin)
     {
-      std::istringstream words(text);
-      std::string        result, line = first, word;
-      bool               is_empty = true;
-      while (words >> word)
-        {
-          if (!is_empty && line.size() + 1 + word.size() > width)
-            {
-              result += line + '\n';
-              line     = indent;
-              is_empty = true;
-            }
-          line += (is_empty ? "" : " ") + word;
-          is_empty = false;
-        }
-      return result + line + '\n';
+      std::string result;
+      for (const std::string &line :
+           Utilities::break_text_into_lines(text, 78 - margin.size()))
+        result += margin + line + '\n';
+      return result;
     }
 
 
@@ -143,94 +128,60 @@ namespace Viscoplastic
 
 
 
-    std::string
-    pattern_of(const Item &entry)
+    /// Which entries of a section are printed: all with comments, those that
+    /// differ from their defaults, or all without a word.
+    enum class Style
     {
-      return entry.node->get<std::string>("pattern_description");
-    }
+      explained,
+      changed,
+      all
+    };
 
-
-
-    std::string
-    default_and_allowed(const Tree &entry, const std::string &quote)
-    {
-      const std::string value   = entry.get<std::string>("default_value");
-      const std::string pattern = entry.get<std::string>("pattern_description");
-      // What a text may be is part of its meaning.
-      return "Default: " + (value.empty() ? "empty" : quote + value + quote) +
-             (pattern == "[Anything]" ?
-                "." :
-                "; allowed: " + allowed_values(pattern) + ".");
-    }
-
-
-
-    // ------------------------------------------------------ parameter file
-
-    /// Print a section. With @p explain, every entry and its comments; without,
-    /// those that differ from their defaults. Lines begin with @p margin.
+    /// Print a section; lines begin with @p margin.
     void
     print_section(std::ostream      &out,
                   const Tree        &section,
                   const std::string &margin,
-                  const bool         explain)
+                  const Style        style)
     {
       const auto comment = [&](const std::string &text) {
-        out << wrap(text, margin + "# ", margin + "# ", 78);
+        if (style == Style::explained)
+          out << wrap(text, margin + "# ");
       };
       bool is_first = true;
-      for (const Item &item : items(section))
+      for (const auto &[name, node, about] : items(section))
         {
-          if (is_entry(*item.node))
+          const bool begins_with_blank_line =
+            style == Style::explained && !(is_first && is_entry(*node));
+          if (is_entry(*node))
             {
-              const auto value = item.node->get<std::string>("value");
-              if (explain)
-                {
-                  if (!is_first)
-                    out << '\n';
-                  for (const std::string &paragraph : item.about)
-                    comment(paragraph);
-                  comment(default_and_allowed(*item.node, ""));
-                }
-              else if (value == item.node->get<std::string>("default_value"))
+              const auto value    = node->get<std::string>("value"),
+                         standard = node->get<std::string>("default_value");
+              const std::string allowed =
+                allowed_values(node->get<std::string>("pattern_description"));
+              if (style == Style::changed && value == standard)
                 continue;
-              out << margin << "set " << item.name << " ="
+              out << (begins_with_blank_line ? "\n" : "");
+              for (const std::string &paragraph : about)
+                comment(paragraph);
+              // What a text may be is part of its meaning.
+              comment(
+                "Default: " + (standard.empty() ? "empty" : standard) +
+                (allowed == "any text" ? "." : "; allowed: " + allowed + "."));
+              out << margin << "set " << name << " ="
                   << (value.empty() ? "" : " ") << value << '\n';
             }
-          else if (explain)
+          else if (style != Style::changed)
             {
-              out << '\n';
-              for (const std::string &paragraph : item.about)
+              out << (begins_with_blank_line ? "\n" : "");
+              for (const std::string &paragraph : about)
                 comment(paragraph);
-              out << margin << "subsection " << item.name << '\n';
-              print_section(out, *item.node, margin + "  ", true);
+              out << margin << "subsection " << name << '\n';
+              print_section(out, *node, margin + "  ", style);
               out << margin << "end\n";
             }
           is_first = false;
         }
-    }
-
-
-
-    /// Print all entries with their defaults, commented out.
-    void
-    print_template(std::ostream      &out,
-                   const Tree        &section,
-                   const std::string &margin)
-    {
-      for (const Item &item : items(section))
-        if (is_entry(*item.node))
-          {
-            const auto value = item.node->get<std::string>("value");
-            out << margin << "set " << item.name << " ="
-                << (value.empty() ? "" : " ") << value << '\n';
-          }
-        else
-          {
-            out << margin << "subsection " << item.name << '\n';
-            print_template(out, *item.node, margin + "  ");
-            out << margin << "end\n";
-          }
     }
 
 
@@ -244,142 +195,17 @@ namespace Viscoplastic
 
 
 
-    // ------------------------------------------------------------ markdown
-
-    /// `text' in quotation marks as code, and the rest without markup.
-    std::string
-    as_markdown(const std::string &text)
-    {
-      std::string result;
-      for (std::size_t i = 0; i < text.size(); ++i)
-        {
-          if (text[i] == '`')
-            {
-              // The closing mark is not an apostrophe within a word.
-              std::size_t end = i;
-              do
-                end = text.find('\'', end + 1);
-              while (end != std::string::npos && end + 1 < text.size() &&
-                     std::isalnum(static_cast<unsigned char>(text[end + 1])) !=
-                       0);
-              if (end != std::string::npos)
-                {
-                  result += '`' + text.substr(i + 1, end - i - 1) + '`';
-                  i = end;
-                  continue;
-                }
-            }
-          if (text[i] == '*' || text[i] == '<' || text[i] == '_' ||
-              text[i] == '`')
-            result += '\\';
-          result += text[i];
-        }
-      return result;
-    }
-
-
-
-    /// Whether the manual text of an entry names all values that it may have.
-    bool
-    names_its_values(const Item &entry, const std::string &pattern)
-    {
-      const std::string start = "[Selection ", end = " ]";
-      if (pattern.compare(0, start.size(), start) != 0)
-        return pattern == "[Bool]";
-      std::string text;
-      for (const std::string &paragraph : entry.about)
-        text += paragraph;
-      for (const std::string &value : Utilities::split_string_list(
-             pattern.substr(start.size(),
-                            pattern.size() - start.size() - end.size()),
-             '|'))
-        if (value != "not given" &&
-            text.find('`' + value + '\'') == std::string::npos)
-          return false;
-      return true;
-    }
-
-
-
-    /// What the page says of default and values, without what goes without
-    /// saying: "" for a text that is empty by default, nothing of values that
-    /// the manual text names, of numbers their range, and long lists once in a
-    /// section.
-    std::string
-    default_and_allowed_in_page(const Item              &entry,
-                                const std::vector<Item> &section)
-    {
-      const auto        value   = entry.node->get<std::string>("default_value");
-      const std::string pattern = pattern_of(entry);
-      const std::size_t long_list = 200;
-      for (const Item &other : section)
-        if (&other == &entry || pattern.size() < long_list)
-          break;
-        else if (is_entry(*other.node) && pattern_of(other) == pattern)
-          return "Allowed: as of `" + other.name + "`.";
-      if (value.empty() && pattern == "[Anything]")
-        return "";
-      if (names_its_values(entry, pattern))
-        return value == "not given" ? "" : "Default: `" + value + "`.";
-      // Of a number the default tells whether it is a whole one.
-      std::string allowed = allowed_values(pattern);
-      for (const std::string start : {"a number", "a whole number"})
-        if (allowed.compare(0, start.size(), start) == 0)
-          {
-            allowed.erase(0, start.size());
-            if (allowed.compare(0, 4, " of ") == 0)
-              allowed.erase(0, 3);
-            return "Default: `" + value + "`" + (allowed.empty() ? "" : ",") +
-                   allowed + ".";
-          }
-      return default_and_allowed(*entry.node, "`");
-    }
-
-
-
+    /// Add to each entry which values it may have, in words.
     void
-    print_markdown(std::ostream      &out,
-                   const Tree        &section,
-                   const std::string &path)
+    add_allowed_values(Tree &section)
     {
-      const std::vector<Item> all = items(section);
-      for (const Item &item : all)
-        if (is_entry(*item.node))
-          {
-            std::string first = "- **`" + item.name + "`** ";
-            for (const std::string &paragraph : item.about)
-              {
-                out << wrap(as_markdown(paragraph), first, "  ", 80);
-                out << (&paragraph == &item.about.back() ? "" : "\n");
-                first = "  ";
-              }
-            const std::string values = default_and_allowed_in_page(item, all);
-            if (!values.empty())
-              out << wrap(values, "  ", "  ", 80);
-          }
+      for (auto &[name, node] : section)
+        if (is_entry(node))
+          node.put("allowed",
+                   allowed_values(
+                     node.get<std::string>("pattern_description")));
         else
-          {
-            const std::string name  = path + item.name;
-            std::string       title = name;
-            if (name == described_boundary || name == described_material ||
-                name == described_table)
-              title = name.substr(0, name.find(' ')) + " <id>";
-            out << "\n## " << as_markdown(title) << "\n\n";
-            const auto about = about_sections.find(name);
-            if (about != about_sections.end())
-              out << wrap(as_markdown(about->second), "", "", 80) << '\n';
-            for (const std::string &paragraph : item.about)
-              out << wrap(as_markdown(paragraph), "", "", 80) << '\n';
-            if (name == described_material)
-              out << wrap("Its entries and laws are those of `Material` but "
-                          "`Volumetric integration` and `Stress history`, "
-                          "which hold for all materials.",
-                          "",
-                          "",
-                          80);
-            else
-              print_markdown(out, *item.node, name + '/');
-          }
+          add_allowed_values(node);
     }
   } // namespace
 
@@ -393,23 +219,21 @@ namespace Viscoplastic
     std::ostringstream out;
     out << "# All parameters of viscoplastic_contact "
         << VISCOPLASTIC_CONTACT_VERSION << "\n#\n"
-        << wrap(introduction, "# ", "# ", 78) << "#\n"
+        << wrap(introduction, "# ") << "#\n"
         << wrap("`#' begins a comment, a backslash at the end of a line "
                 "continues it, `include other.prm' reads another file. This "
                 "file is itself a scene, " +
                   std::string(files.empty() ? "a square at rest" :
                                               "the one that was given") +
                   ": change it, and delete what should keep its default.",
-                "# ",
-                "# ",
-                78)
+                "# ")
         << '\n';
     const Tree tree = parameters.entries_as_written();
     Tree       top;
     for (const auto &child : tree)
       if (is_entry(child.second))
         top.push_back(child);
-    print_section(out, top, "", true);
+    print_section(out, top, "", Style::explained);
     // One of each kind of numbered sections; of a scene, whose values may
     // differ in each, all of them.
     std::set<std::string> explained;
@@ -420,12 +244,12 @@ namespace Viscoplastic
         out << '\n';
         const auto about = about_sections.find(name);
         if (about != about_sections.end())
-          out << wrap(about->second, "# ", "# ", 78);
+          out << wrap(about->second, "# ");
         if (files.empty() &&
             (name == described_material || name == described_table))
           {
             out << "#\n# subsection " << name << '\n';
-            print_template(out, section, "#   ");
+            print_section(out, section, "#   ", Style::all);
             out << "# end\n";
             continue;
           }
@@ -433,7 +257,9 @@ namespace Viscoplastic
         print_section(out,
                       section,
                       "  ",
-                      !files.empty() || explained.insert(kind_of(name)).second);
+                      !files.empty() || explained.insert(kind_of(name)).second ?
+                        Style::explained :
+                        Style::changed);
         out << "end\n";
       }
     return out.str();
@@ -442,8 +268,8 @@ namespace Viscoplastic
 
 
   std::string
-  describe_parameters_as_markdown(const std::vector<std::string> &files,
-                                  const std::vector<std::string> &overrides)
+  describe_parameters_as_json(const std::vector<std::string> &files,
+                              const std::vector<std::string> &overrides)
   {
     std::vector<std::string> described{described_boundary + "/Role=not given",
                                        described_material + "/Law=elastic",
@@ -452,20 +278,14 @@ namespace Viscoplastic
     if (!files.empty())
       described.push_back(libraries + "=" +
                           Parameters(files, overrides).handler.get(libraries));
-    const Parameters   parameters({}, described);
-    std::ostringstream out;
-    out << "<!-- Made by `viscoplastic_contact --describe=markdown`; do not "
-           "edit. -->\n\n# Parameters\n\n"
-        << wrap("Every entry of a parameter file, as `viscoplastic_contact "
-                "--describe` prints them; what is said without a default is a "
-                "text, empty by default. How to write a scene with them is in "
-                "[scene.md](scene.md).",
-                "",
-                "",
-                80)
-        << '\n'
-        << wrap(as_markdown(introduction), "", "", 80) << '\n';
-    print_markdown(out, declared_entries(parameters.handler), "");
-    return out.str();
+    Tree entries = declared_entries(Parameters({}, described).handler),
+         sections, result;
+    add_allowed_values(entries);
+    for (const auto &[name, about] : about_sections)
+      sections.push_back({name, Tree(about)});
+    result.put("introduction", introduction);
+    result.add_child("sections", sections);
+    result.add_child("entries", entries);
+    return as_json(result);
   }
 } // namespace Viscoplastic

@@ -2,6 +2,8 @@
 #include <viscoplastic_contact/discretization/initial_state.h>
 #include <viscoplastic_contact/results/body_fields.h>
 
+#include <map>
+
 namespace Viscoplastic
 {
   namespace
@@ -138,58 +140,37 @@ namespace Viscoplastic
   std::vector<std::string>
   BodyFields<dim>::names(const std::set<RecordedField> &fields)
   {
+    using Field = RecordedField;
+    // With their ranks as tensors.
+    static const std::map<Field, std::pair<std::string, unsigned int>> columns{
+      {Field::displacement, {"displacement", 1}},
+      {Field::velocity, {"velocity", 1}},
+      {Field::stress, {"stress", 2}},
+      {Field::von_mises_stress, {"von_mises", 0}},
+      {Field::irreversible_stress, {"irreversible_stress", 2}},
+      {Field::total_strain, {"strain", 2}},
+      {Field::irreversible_strain, {"irreversible_strain", 2}},
+      {Field::creep_strain, {"creep_strain", 0}},
+      {Field::creep_rate, {"creep_rate", 0}},
+      {Field::history, {"history", 2}},
+      {Field::temperature, {"temperature", 0}}};
     const std::string        xyz = "xyz";
     std::vector<std::string> result;
-    const auto               add_vector = [&](const std::string &name) {
-      for (unsigned int d = 0; d < dim; ++d)
-        result.push_back(name + "_" + xyz[d]);
-    };
-    const auto add_tensor = [&](const std::string &name) {
-      for (const auto &[i, j] : stress_components<dim>())
-        result.push_back(name + "_" + xyz[i] + xyz[j]);
-    };
-    for (const RecordedField field : fields)
-      switch (field)
+    for (const Field field : fields)
+      if (field == Field::principal_stresses)
+        for (const char *number : {"1", "2", "3"})
+          result.push_back(std::string("principal_stress_") + number);
+      else if (!is_of_boundary(field))
         {
-          case RecordedField::displacement:
-            add_vector("displacement");
-            break;
-          case RecordedField::velocity:
-            add_vector("velocity");
-            break;
-          case RecordedField::stress:
-            add_tensor("stress");
-            break;
-          case RecordedField::von_mises_stress:
-            result.emplace_back("von_mises");
-            break;
-          case RecordedField::irreversible_stress:
-            add_tensor("irreversible_stress");
-            break;
-          case RecordedField::total_strain:
-            add_tensor("strain");
-            break;
-          case RecordedField::irreversible_strain:
-            add_tensor("irreversible_strain");
-            break;
-          case RecordedField::creep_strain:
-            result.emplace_back("creep_strain");
-            break;
-          case RecordedField::creep_rate:
-            result.emplace_back("creep_rate");
-            break;
-          case RecordedField::history:
-            add_tensor("history");
-            break;
-          case RecordedField::principal_stresses:
-            for (const char *number : {"1", "2", "3"})
-              result.push_back(std::string("principal_stress_") + number);
-            break;
-          case RecordedField::temperature:
-            result.emplace_back("temperature");
-            break;
-          default: // of the boundary
-            break;
+          const auto &[name, rank] = columns.at(field);
+          if (rank == 0)
+            result.push_back(name);
+          else if (rank == 1)
+            for (unsigned int d = 0; d < dim; ++d)
+              result.push_back(name + "_" + xyz[d]);
+          else
+            for (const auto &[i, j] : stress_components<dim>())
+              result.push_back(name + "_" + xyz[i] + xyz[j]);
         }
     return result;
   }

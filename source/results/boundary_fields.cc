@@ -50,41 +50,35 @@ namespace Viscoplastic
       return;
     const ContactState        &contact = state.contact;
     const std::vector<double> &bounds  = contact.bound;
-    std::vector<double>        values(bounds.size());
+    const auto nodal = [&](const bool of_obstacles, const auto &value) {
+      std::vector<double> values(bounds.size());
+      for (unsigned int p = 0; p < values.size(); ++p)
+        values[p] = value(p);
+      return face->nodal_field(values, of_obstacles);
+    };
     if (has(RecordedField::traction))
       density = face->density(contact, /* of_friction_alone = */ true);
     if (has(RecordedField::bound))
-      {
-        for (unsigned int p = 0; p < values.size(); ++p)
-          values[p] = bounds[p] / face->weights()[p];
-        bound = face->nodal_field(values);
-      }
+      bound = nodal(false, [&](const unsigned int p) {
+        return bounds[p] / face->weights()[p];
+      });
     if (has(RecordedField::utilization))
-      {
-        for (unsigned int p = 0; p < values.size(); ++p)
-          values[p] = bounds[p] > 0. ?
-                        stable_norm(contact.multiplier[p]) / bounds[p] :
-                        0.;
-        utilization = face->nodal_field(values);
-      }
+      utilization = nodal(false, [&](const unsigned int p) {
+        return bounds[p] > 0. ? stable_norm(contact.multiplier[p]) / bounds[p] :
+                                0.;
+      });
     if (has(RecordedField::stick))
-      {
-        for (unsigned int p = 0; p < values.size(); ++p)
-          values[p] = contact.sticks[p] ? 0. : 1.;
-        slipping = face->nodal_field(values);
-      }
+      slipping = nodal(false, [&](const unsigned int p) {
+        return contact.sticks[p] ? 0. : 1.;
+      });
     if (has(RecordedField::contact_pressure))
-      {
-        for (unsigned int p = 0; p < values.size(); ++p)
-          values[p] = contact.multiplier[p][0] / face->weights()[p];
-        pressure = face->nodal_field(values, /* of_obstacles = */ true);
-      }
+      pressure = nodal(true, [&](const unsigned int p) {
+        return contact.multiplier[p][0] / face->weights()[p];
+      });
     if (has(RecordedField::gap))
-      {
-        for (unsigned int p = 0; p < values.size(); ++p)
-          values[p] = bounds[p] - contact.slip[p][0];
-        gap = face->nodal_field(values, /* of_obstacles = */ true);
-      }
+      gap = nodal(true, [&](const unsigned int p) {
+        return bounds[p] - contact.slip[p][0];
+      });
   }
 
 

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <viscoplastic_contact/base/instantiate_member.h>
+#include <viscoplastic_contact/base/messages.h>
 #include <viscoplastic_contact/discretization/initial_state.h>
 #include <viscoplastic_contact/error/memory_bound.h>
 #include <viscoplastic_contact/mesh/mesh_size.h>
@@ -21,40 +23,41 @@ namespace Viscoplastic
   {
     // The contact tolerance bounds the error in the energy norm, in which
     // nearly incompressible bodies hide large errors of reactions.
-    const double      defect    = balance_defect(quantities);
-    const std::string time_unit = scene.unit(Quantity::time);
-    constexpr double  lost = 1e-3, far = 1e3;
-    const double      times =
+    const double      defect = balance_defect(quantities);
+    const std::string when =
+      "at t = " + number(step.time_step.t, 6) + scene.unit(Quantity::time);
+    constexpr double lost = 1e-3, far = 1e3;
+    const double     times =
       quantities.max_displacement /
       body_diagonal(discretization->space.dof_handler.get_triangulation());
-    std::ostringstream loss;
+    std::string loss;
     // Loads that are not rounding, of which rounding loses a part.
     if (const double missing = stable_norm(quantities.sum_of_forces);
         missing > lost * std::max(largest_force, quantities.load_size) &&
         missing < quantities.load_size &&
         missing <= quantities.rounding_of_forces)
-      loss << "forces miss the loads by " << missing / quantities.load_size
-           << " of them";
+      loss = "forces miss the loads by " +
+             number(missing / quantities.load_size, 6) + " of them";
     else if (quantities.load_size > 0. && times > far &&
              step.report.relative_error > lost)
-      loss << "the error is " << step.report.relative_error
-           << " of the solution";
-    if (!loss.str().empty())
+      loss = "the error is " + number(step.report.relative_error, 6) +
+             " of the solution";
+    if (!loss.empty())
       {
-        loss << ", which is rounding of displacements";
+        loss += ", which is rounding of displacements";
         if (times > far)
-          loss << " of " << times << " times the size of the body: "
-               << (discretization->space.is_held_by_contact() ?
+          loss += " of " + number(times, 6) + " times the size of the body: " +
+                  (discretization->space.is_held_by_contact() ?
                      "contact hardly holds it, or not at all. Let the loads "
                      "press the body onto its foundation, or prescribe "
                      "displacements that hold it." :
                      "it flows without end, or gives way far too easily. Look "
                      "at the units of its material and its loads.");
         else
-          loss << " where the body is stiffest: materials whose stiffness "
+          loss += " where the body is stiffest: materials whose stiffness "
                   "differs by less, or prescribed displacements where it is "
                   "stiff, mend that.";
-        throw StepFailure(step.time_step.n, step.time_step.t, loss.str());
+        throw StepFailure(step.time_step.n, step.time_step.t, loss);
       }
     // Beside stresses that balance each other the forces may be nothing.
     const bool is_beside_stresses =
@@ -64,35 +67,33 @@ namespace Viscoplastic
         defect > std::max(1e-8, std::min(1e3 * step.report.tolerance, 1e-2)))
       {
         balance_is_doubtful = true;
-        std::ostringstream text;
-        text << "Warning: forces balance only to " << defect
-             << " of the largest at t = " << step.time_step.t << time_unit
-             << "; a smaller 'Solver/Contact tolerance' mends this unless "
-                "Poisson's ratio is next to 1/2 or the body hardly resists.";
-        console.remark(text.str());
+        console.remark("Warning: forces balance only to " + number(defect, 6) +
+                       " of the largest " + when +
+                       "; a smaller 'Solver/Contact tolerance' mends this "
+                       "unless Poisson's ratio is next to 1/2 or the body "
+                       "hardly resists.");
       }
     if (!solver_error_is_told && step.report.tolerance > 0. &&
         step.report.relative_error > 1.01 * step.report.tolerance)
       {
         solver_error_is_told = true;
-        std::ostringstream text;
-        text << "Warning: rounding leaves an error of the solver of "
-             << step.report.relative_error << " at t = " << step.time_step.t
-             << time_unit << ", more than its tolerance of "
-             << step.report.tolerance
-             << ": cells that are less flat, stiffness that differs less or "
-                "Poisson's ratio farther from 1/2 would leave less.";
-        console.remark(text.str());
+        console.remark("Warning: rounding leaves an error of the solver of " +
+                       number(step.report.relative_error, 6) + ' ' + when +
+                       ", more than its tolerance of " +
+                       number(step.report.tolerance, 6) +
+                       ": cells that are less flat, stiffness that differs "
+                       "less or Poisson's ratio farther from 1/2 would leave "
+                       "less.");
       }
     constexpr unsigned int most_doubts = 3; // that are told
     if (!step.report.doubt.empty() && run.doubtful_steps.size() < most_doubts)
       {
-        std::ostringstream text;
-        text << "the step to t = " << step.time_step.t << time_unit
-             << " may have several solutions, and the body may jump in it: "
-             << step.report.doubt << '.';
-        run.doubtful_steps.push_back(text.str());
-        console.remark("Warning: " + text.str());
+        run.doubtful_steps.push_back(
+          "the step to t = " + number(step.time_step.t, 6) +
+          scene.unit(Quantity::time) +
+          " may have several solutions, and the body may jump in it: " +
+          step.report.doubt + '.');
+        console.remark("Warning: " + run.doubtful_steps.back());
       }
     if (!is_loose && step.time_step.n > 0 &&
         discretization->space.is_held_by_contact())
@@ -104,14 +105,10 @@ namespace Viscoplastic
           Utilities::MPI::sum(pushes, discretization->space.communicator) <=
           1e-8 * step.end.forces.internal.l1_norm();
         if (is_loose)
-          {
-            std::ostringstream text;
-            text << "Note: at t = " << step.time_step.t << time_unit
-                 << " nothing presses the body onto its foundation, so that "
-                    "its rigid motions are arbitrary; a small load that "
-                    "presses it determines them.";
-            console.remark(text.str());
-          }
+          console.remark("Note: " + when +
+                         " nothing presses the body onto its foundation, so "
+                         "that its rigid motions are arbitrary; a small load "
+                         "that presses it determines them.");
       }
     // Beside the nodal forces of the stress: loads may balance each other.
     if (!scene.supports.empty() && !support_carries && step.time_step.n > 0)
@@ -124,26 +121,22 @@ namespace Viscoplastic
             if (support_carries || force <= 1e-3 * size)
               continue;
             support_carries = true;
-            std::ostringstream text;
-            text
-              << "Note: at t = " << step.time_step.t << time_unit
-              << " the support at " << support.place << " carries a force, of "
-              << force << scene.unit(Quantity::force)
-              << "; there is no bounded stress there, and the body gives way "
-                 "at the support without bound as the mesh is refined.";
-            console.remark(text.str());
+            console.remark("Note: " + when + " the support at " +
+                           support.place + " carries a force, of " +
+                           number(force, 6) + scene.unit(Quantity::force) +
+                           "; there is no bounded stress there, and the body "
+                           "gives way at the support without bound as the "
+                           "mesh is refined.");
           }
       }
     if (run.capped_volume.value == 0. && step.capped_volume > 0.)
-      {
-        std::ostringstream text;
-        text << "Warning: the stress has passed the cap of a law, in the "
-                "volume "
-             << step.capped_volume << scene.unit(Quantity::volume)
-             << " at t = " << step.time_of_rate() << time_unit
-             << "; beyond it the law is continued linearly.";
-        console.remark(text.str());
-      }
+      console.remark("Warning: the stress has passed the cap of a law, in the "
+                     "volume " +
+                     number(step.capped_volume, 6) +
+                     scene.unit(Quantity::volume) +
+                     " at t = " + number(step.time_of_rate(), 6) +
+                     scene.unit(Quantity::time) +
+                     "; beyond it the law is continued linearly.");
   }
 
 
@@ -218,44 +211,32 @@ namespace Viscoplastic
   Recorder<dim>::remarks(const State<dim> &state) const
   {
     std::vector<std::string> result;
-    const std::string        time_unit = scene.unit(Quantity::time);
-    const double             fluctuation =
+    const auto               at = [this](const double t) {
+      return "Note: at t = " + number(t, 6) + scene.unit(Quantity::time);
+    };
+    const double fluctuation =
       scene.has_viscosity() ?
-                    relative_stress_fluctuation(discretization->stress_space, state) :
-                    0.;
+        relative_stress_fluctuation(discretization->stress_space, state) :
+        0.;
     if (fluctuation > 0.2 &&
         scene.parameters.stress.stress_history == StressHistory::cell_means)
-      {
-        std::ostringstream text;
-        text << std::setprecision(3)
-             << "Note: the stress varies within cells by " << fluctuation
-             << " of its norm, so that cell means may be too stiff in long "
-                "creep; refine the mesh or set 'Material/Stress history' = "
-                "quadrature points.";
-        result.push_back(text.str());
-      }
-
+      result.push_back("Note: the stress varies within cells by " +
+                       number(fluctuation, 3) +
+                       " of its norm, so that cell means may be too stiff in "
+                       "long creep; refine the mesh or set 'Material/Stress "
+                       "history' = quadrature points.");
     if (run.tension_share.value > 0.01)
-      {
-        std::ostringstream text;
-        text << "Note: at t = " << run.tension_share.t << time_unit
-             << " the foundation pulls at the body on "
-             << std::lround(100. * run.tension_share.value)
-             << " % of the face in bilateral contact, which does not open; "
-                "'Contact law' = unilateral does.";
-        result.push_back(text.str());
-      }
-
+      result.push_back(
+        at(run.tension_share.t) + " the foundation pulls at the body on " +
+        std::to_string(std::lround(100. * run.tension_share.value)) +
+        " % of the face in bilateral contact, which does not open; 'Contact "
+        "law' = unilateral does.");
     if (run.slide.value > 1.)
-      {
-        std::ostringstream text;
-        text << std::setprecision(2) << "Note: at t = " << run.slide.t
-             << time_unit << " two bodies have slid along each other by "
-             << run.slide.value
-             << " times the width of a face, and still touch where they did "
-                "at first.";
-        result.push_back(text.str());
-      }
+      result.push_back(at(run.slide.t) +
+                       " two bodies have slid along each other by " +
+                       number(run.slide.value, 2) +
+                       " times the width of a face, and still touch where "
+                       "they did at first.");
     if (discretization->slide)
       for (const auto &[id, share] : discretization->slide->uncovered_shares())
         if (share > 0.005)
@@ -266,33 +247,26 @@ namespace Viscoplastic
             std::to_string(id) + "/Against' belongs to the smaller face.");
 
     if (run.missed_bounds > 0.01 * run.computed_bounds)
-      {
-        std::ostringstream text;
-        text << std::setprecision(2)
-             << "Note: the bounds of Coulomb friction, of the pressure of the "
-                "step before, miss those of the pressure of their step by "
-             << 100. * run.missed_bounds / run.computed_bounds
-             << " % on average; smaller steps or 'Solver/Coulomb pressure' = "
-                "Newton mend this.";
-        result.push_back(text.str());
-      }
+      result.push_back(
+        "Note: the bounds of Coulomb friction, of the pressure "
+        "of the step before, miss those of the pressure of "
+        "their step by " +
+        number(100. * run.missed_bounds / run.computed_bounds, 2) +
+        " % on average; smaller steps or 'Solver/Coulomb "
+        "pressure' = Newton mend this.");
 
     // What is missing is the work of friction, see EnergyBalance.
     if (const double missing = std::abs(balance.defect()),
         friction             = balance.friction_dissipation();
         run.has_friction && !scene.has_stages() && missing > 0.1 * friction &&
         missing > 1e-3 * balance.scale())
-      {
-        std::ostringstream text;
-        text
-          << std::setprecision(2) << "Note: the energy balance is missing "
-          << 100. * missing / friction
-          << " % of the friction dissipation, which may be wrong by about that: "
-             "it takes the friction at the ends of steps, which changes "
-             "within them; shorter steps mend this, which 'Error "
-             "control/Quantity' = friction_dissipation chooses.";
-        result.push_back(text.str());
-      }
+      result.push_back(
+        "Note: the energy balance is missing " +
+        number(100. * missing / friction, 2) +
+        " % of the friction dissipation, which may be wrong by about that: it "
+        "takes the friction at the ends of steps, which changes within them; "
+        "shorter steps mend this, which 'Error control/Quantity' = "
+        "friction_dissipation chooses.");
 
     if (run.has_zero_quantity())
       result.push_back("Warning: '" +
@@ -307,19 +281,15 @@ namespace Viscoplastic
 
     // What meshes do is no physics.
     if (std::abs(balance.adaptation_energy()) > 0.1 * balance.scale())
-      {
-        std::ostringstream text;
-        text << std::setprecision(3)
-             << "Warning: changes of the mesh have added "
-             << balance.adaptation_energy()
-             << " to the stored energy beyond the work of the loads, beside "
-             << balance.scale()
-             << " of the loads and the initial state: some meshes were so "
-                "coarse that energies, and what flowed on them, are not to be "
-                "trusted. Begin with a finer mesh ('Geometry/Global "
-                "refinements').";
-        result.push_back(text.str());
-      }
+      result.push_back("Warning: changes of the mesh have added " +
+                       number(balance.adaptation_energy(), 3) +
+                       " to the stored energy beyond the work of the loads, "
+                       "beside " +
+                       number(balance.scale(), 3) +
+                       " of the loads and the initial state: some meshes were "
+                       "so coarse that energies, and what flowed on them, are "
+                       "not to be trusted. Begin with a finer mesh ('Geometry/"
+                       "Global refinements').");
 
     const double size =
       body_diagonal(discretization->space.dof_handler.get_triangulation());
@@ -331,7 +301,7 @@ namespace Viscoplastic
         std::ostringstream text;
         text << std::setprecision(3)
              << "Note: at t = " << (is_far ? run.displacement.t : run.strain.t)
-             << time_unit;
+             << scene.unit(Quantity::time);
         if (is_far)
           text << " the largest displacement is "
                << run.displacement.value / size
@@ -358,12 +328,6 @@ namespace Viscoplastic
 
 
 
-  template void
-  Recorder<2>::judge(const AcceptedStep<2> &, const StepQuantities<2> &);
-  template void
-  Recorder<3>::judge(const AcceptedStep<3> &, const StepQuantities<3> &);
-  template std::vector<std::string>
-  Recorder<2>::remarks(const State<2> &) const;
-  template std::vector<std::string>
-  Recorder<3>::remarks(const State<3> &) const;
+  VISCOPLASTIC_INSTANTIATE_MEMBER(Recorder, judge);
+  VISCOPLASTIC_INSTANTIATE_MEMBER(Recorder, remarks);
 } // namespace Viscoplastic

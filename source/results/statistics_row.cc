@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <viscoplastic_contact/base/instantiate_member.h>
 #include <viscoplastic_contact/results/recorder.h>
 #include <viscoplastic_contact/results/run_phases.h>
 #include <viscoplastic_contact/results/unit_labels.h>
@@ -342,12 +343,5 @@ namespace Viscoplastic
 
 
 
-  template StatisticsRow
-  Recorder<2>::row(const AcceptedStep<2> &,
-                   const StepQuantities<2> &,
-                   const SolutionErrors &);
-  template StatisticsRow
-  Recorder<3>::row(const AcceptedStep<3> &,
-                   const StepQuantities<3> &,
-                   const SolutionErrors &);
+  VISCOPLASTIC_INSTANTIATE_MEMBER(Recorder, row);
 } // namespace Viscoplastic

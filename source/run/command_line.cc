@@ -11,6 +11,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <map>
 
 namespace Viscoplastic
 {
@@ -32,20 +33,19 @@ namespace Viscoplastic
     }
 
 
-    const std::vector<std::string> flags{"--help",
-                                         "--version",
-                                         "--describe",
-                                         "--check",
-                                         "--quiet",
-                                         "--verbose",
-                                         "--restart"};
-    const std::vector<std::string> with_value{"--set", "--log"};
-
-    bool
-    contains(const std::vector<std::string> &list, const std::string &item)
-    {
-      return std::find(list.begin(), list.end(), item) != list.end();
-    }
+    /// The options with the values that each may have behind `='; those of the
+    /// second list have any, which may also be the next argument.
+    const std::map<std::string, std::vector<std::string>> flags{
+      {"--help", {}},
+      {"--version", {}},
+      {"--describe", {"prm", "json"}},
+      {"--check", {"json", "means"}},
+      {"--quiet", {}},
+      {"--verbose", {}},
+      {"--restart", {"auto"}}};
+    const std::map<std::string, std::string> with_value{
+      {"--set", "'Section/Entry=value'"},
+      {"--log", "the name of a file"}};
 
 
 
@@ -54,161 +54,84 @@ namespace Viscoplastic
 
 
 
-    /// Reads one argument after the other.
-    class Reader
+    void
+    require(const bool condition, const std::string &sentence)
     {
-    public:
-      /// Throws ExcMessage, as the other functions do.
-      explicit Reader(const std::vector<std::string> &arguments);
-
-      CommandLine result;
-
-    private:
-      /// Name the command that has taken the place of an argument of earlier
-      /// versions.
-      void
-      refuse_study(const std::string &argument) const;
-
-      void
-      read_file(const std::string &argument);
-
-      /// An option, of which @p value stands behind '=', unless it is null.
-      void
-      read_flag(const std::string &option, const std::string *value);
-
-      void
-      read_option(const std::string &option, const std::string &value);
-
-      void
-      set_task(const std::string &option, const std::string &value);
-
-      /// What excludes each other.
-      void
-      check() const;
-
-      /// The argument that has decided on the task; empty for none.
-      std::string task_option;
-    };
-
-
-
-    Reader::Reader(const std::vector<std::string> &arguments)
-    {
-      if (arguments.empty())
-        result.task = Task::guide;
-      bool only_files = false;
-      for (std::size_t i = 0; i < arguments.size(); ++i)
-        {
-          const std::string &argument = arguments[i];
-          refuse_study(only_files ? "" : argument);
-          if (only_files || argument.empty() || argument[0] != '-')
-            {
-              read_file(argument);
-              continue;
-            }
-          if (argument == "--")
-            {
-              only_files = true;
-              continue;
-            }
-          const std::size_t equals = argument.find('=');
-          std::string       option = argument.substr(0, equals);
-          if (option == "-h")
-            option = "--help";
-          const bool  has_value = equals != std::string::npos;
-          std::string value     = has_value ? argument.substr(equals + 1) : "";
-          if (!contains(with_value, option))
-            {
-              read_flag(option, has_value ? &value : nullptr);
-              continue;
-            }
-          if (!has_value)
-            {
-              AssertThrow(i + 1 < arguments.size(),
-                          ExcMessage("The option " + option +
-                                     (option == "--set" ?
-                                        " needs 'Section/Entry=value'" :
-                                        " needs the name of a file") +
-                                     " after it."));
-              value = arguments[++i];
-            }
-          read_option(option, value);
-        }
-      check();
+      AssertThrow(condition, ExcMessage(sentence));
     }
 
 
 
     void
-    Reader::refuse_study(const std::string &argument) const
-    {
-      const bool is_price =
-        argument == "--price" || argument.compare(0, 8, "--price=") == 0;
-      const bool is_study = result.files.empty() && task_option.empty() &&
-                            (argument == "study" || argument == "effects");
-      if (!is_price && !is_study)
-        return;
-      const std::string name = is_price ? "price" : argument;
-      AssertThrow(false,
-                  ExcMessage("This is a command of its own: write " +
-                             source_path("contrib") + '/' + name +
-                             (is_price ? " 0.01 scene.prm." : " scene.prm.")));
-    }
-
-
-
-    void
-    Reader::read_file(const std::string &argument)
+    read_file(const std::string &argument, CommandLine &result)
     {
       std::error_code error;
-      AssertThrow(argument.find('=') == std::string::npos ||
-                    std::filesystem::exists(argument, error),
-                  ExcMessage("There is no parameter file '" +
-                             excerpt(argument) +
-                             "'; to give an entry a value write --set '" +
-                             excerpt(argument) + "'."));
+      require(argument.find('=') == std::string::npos ||
+                std::filesystem::exists(argument, error),
+              "There is no parameter file '" + excerpt(argument) +
+                "'; to give an entry a value write --set '" +
+                excerpt(argument) + "'.");
       result.files.push_back(argument);
     }
 
 
 
     void
-    Reader::read_option(const std::string &option, const std::string &value)
+    read_option(const std::string &option,
+                const std::string &value,
+                CommandLine       &result)
     {
       if (option == "--set")
-        result.overrides.push_back(value);
-      else
         {
-          AssertThrow(!value.empty(),
-                      ExcMessage("The option --log needs the name of a file "
-                                 "after it."));
-          AssertThrow(std::filesystem::path(value).extension() != ".prm",
-                      ExcMessage("The option --log would overwrite '" +
-                                 excerpt(value) +
-                                 "', which looks like a parameter file; "
-                                 "choose another name."));
-          result.log = value;
+          result.overrides.push_back(value);
+          return;
         }
+      require(!value.empty(),
+              "The option --log needs the name of a file after it.");
+      require(std::filesystem::path(value).extension() != ".prm",
+              "The option --log would overwrite '" + excerpt(value) +
+                "', which looks like a parameter file; choose another name.");
+      result.log = value;
     }
 
 
 
+    /// An option, of which @p value stands behind '=', unless that is null. @p
+    /// of_task is the one that has decided on the task, empty for none.
     void
-    Reader::read_flag(const std::string &option, const std::string *value)
+    read_flag(const std::string &option,
+              const std::string *value,
+              std::string       &of_task,
+              CommandLine       &result)
     {
-      if (!contains(flags, option))
+      const auto flag = flags.find(option);
+      if (flag == flags.end())
         {
-          std::vector<std::string> options(flags);
-          options.insert(options.end(), with_value.begin(), with_value.end());
+          std::vector<std::string> options;
+          for (const auto &known : flags)
+            options.push_back(known.first);
+          for (const auto &known : with_value)
+            options.push_back(known.first);
           const std::string nearest = nearest_name(option, options);
-          AssertThrow(false,
-                      ExcMessage(
-                        "There is no option '" + excerpt(option) + "'; " +
-                        (nearest.empty() ?
-                           "the options are " + enumeration(options) + "." :
-                           "did you mean " + nearest + "?")));
+          require(false,
+                  "There is no option '" + excerpt(option) + "'; " +
+                    (nearest.empty() ?
+                       "the options are " + enumeration(options) + "." :
+                       "did you mean " + nearest + "?"));
         }
-      const std::string text = value ? *value : "";
+      const std::string               text   = value ? *value : "";
+      const std::vector<std::string> &values = flag->second;
+      require(value == nullptr ||
+                std::find(values.begin(), values.end(), text) != values.end(),
+              "The option " + option +
+                (values.empty() ?
+                   " has no value, such as '" :
+                   " can have the value" +
+                     (values.size() > 1 ?
+                        "s " + values.front() + " and " + values.back() :
+                        ' ' + values.front()) +
+                     ", not '") +
+                excerpt(text) + "'.");
       if (option == "--quiet")
         result.quiet = true;
       else if (option == "--verbose")
@@ -216,63 +139,44 @@ namespace Viscoplastic
       else if (option == "--restart")
         result.restart = text == "auto" ? Restart::automatic : Restart::yes;
       else
-        set_task(option, text);
-      AssertThrow(
-        value == nullptr ||
-          (option == "--describe" && (text == "markdown" || text == "prm")) ||
-          (option == "--check" && (text == "json" || text == "means")) ||
-          (option == "--restart" && text == "auto"),
-        ExcMessage("The option " + option +
-                   (option == "--describe" ?
-                      " can have the values prm and markdown, not '" :
-                    option == "--check" ?
-                      " can have the values json and means, not '" :
-                    option == "--restart" ? " can have the value auto, not '" :
-                                            " has no value, such as '") +
-                   excerpt(text) + "'."));
+        {
+          require(of_task.empty() || of_task == option,
+                  "The options " + of_task + " and " + option +
+                    " exclude each other.");
+          of_task           = option;
+          result.with_means = text == "means";
+          result.task       = option == "--help" ?
+                                Task::help :
+                              option == "--version" ?
+                                Task::version :
+                              option == "--check" ?
+                                (text.empty() ? Task::check : Task::print_scene) :
+                              text == "json" ? Task::describe_as_json :
+                                               Task::describe;
+        }
     }
 
 
 
+    /// What excludes each other.
     void
-    Reader::set_task(const std::string &option, const std::string &value)
+    check(const CommandLine &line, const std::string &of_task)
     {
-      AssertThrow(task_option.empty() || task_option == option,
-                  ExcMessage("The options " + task_option + " and " + option +
-                             " exclude each other."));
-      task_option       = option;
-      result.with_means = value == "means";
-      result.task       = option == "--help"    ? Task::help :
-                          option == "--version" ? Task::version :
-                          option == "--check"   ? (value.empty() ? Task::check :
-                                                                   Task::print_scene) :
-                          value == "markdown"   ? Task::describe_as_markdown :
-                                                  Task::describe;
-    }
-
-
-
-    void
-    Reader::check() const
-    {
-      const bool describes = result.task == Task::describe ||
-                             result.task == Task::describe_as_markdown;
-      const bool reads_scene = result.task == Task::run ||
-                               result.task == Task::check ||
-                               result.task == Task::print_scene;
-      AssertThrow(!reads_scene || !result.files.empty(),
-                  ExcMessage("There is no parameter file among the arguments; "
-                             "write viscoplastic_contact [options] "
-                             "scene.prm."));
-      AssertThrow(result.task == Task::run || result.restart == Restart::no,
-                  ExcMessage("The options " + task_option +
-                             " and --restart exclude each other."));
-      AssertThrow(reads_scene || (describes && !result.files.empty()) ||
-                    (result.files.empty() && result.overrides.empty()),
-                  ExcMessage("The option " + task_option + " goes without " +
-                             (describes ? "--set where there is no parameter "
-                                          "file." :
-                                          "parameter files and --set.")));
+      const bool describes =
+        line.task == Task::describe || line.task == Task::describe_as_json;
+      const bool reads_scene = line.task == Task::run ||
+                               line.task == Task::check ||
+                               line.task == Task::print_scene;
+      require(!reads_scene || !line.files.empty(),
+              "There is no parameter file among the arguments; write "
+              "viscoplastic_contact [options] scene.prm.");
+      require(line.task == Task::run || line.restart == Restart::no,
+              "The options " + of_task + " and --restart exclude each other.");
+      require(reads_scene || (describes && !line.files.empty()) ||
+                (line.files.empty() && line.overrides.empty()),
+              "The option " + of_task + " goes without " +
+                (describes ? "--set where there is no parameter file." :
+                             "parameter files and --set."));
     }
   } // namespace
 
@@ -281,7 +185,47 @@ namespace Viscoplastic
   CommandLine
   read_command_line(const std::vector<std::string> &arguments)
   {
-    return Reader(arguments).result;
+    CommandLine result;
+    if (arguments.empty())
+      result.task = Task::guide;
+    std::string of_task;
+    bool        only_files = false;
+    for (std::size_t i = 0; i < arguments.size(); ++i)
+      {
+        const std::string &argument = arguments[i];
+        if (only_files || argument.empty() || argument[0] != '-')
+          read_file(argument, result);
+        else if (argument == "--")
+          only_files = true;
+        else
+          {
+            const std::size_t equals    = argument.find('=');
+            const bool        has_value = equals != std::string::npos;
+            std::string       option    = argument.substr(0, equals),
+                        value = has_value ? argument.substr(equals + 1) : "";
+            if (option == "-h")
+              option = "--help";
+            const auto needed = with_value.find(option);
+            if (needed == with_value.end())
+              {
+                read_flag(option,
+                          has_value ? &value : nullptr,
+                          of_task,
+                          result);
+                continue;
+              }
+            if (!has_value)
+              {
+                require(i + 1 < arguments.size(),
+                        "The option " + option + " needs " + needed->second +
+                          " after it.");
+                value = arguments[++i];
+              }
+            read_option(option, value, result);
+          }
+      }
+    check(result, of_task);
+    return result;
   }
 
 
@@ -308,7 +252,7 @@ namespace Viscoplastic
            "                               its values and its mesh, for "
            "programs; =means:\n"
            "                               the means of its data, too\n"
-           "  --describe[=markdown]        print a parameter file with every "
+           "  --describe[=json]            print a parameter file with every "
            "entry, its\n"
            "                               meaning, unit, default and allowed "
            "values;\n"

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <viscoplastic_contact/base/messages.h>
+#include <viscoplastic_contact/results/run_record.h>
 #include <viscoplastic_contact/run/run_files.h>
 
+#include <filesystem>
 #include <iomanip>
 
 namespace Viscoplastic
@@ -17,6 +19,16 @@ namespace Viscoplastic
       return {Utilities::MPI::sum(stats.VmRSS / 1024., communicator),
               Utilities::MPI::sum(stats.VmHWM / 1024., communicator)};
     }
+
+
+
+    std::string
+    checkpoint_directory(const Parameters &parameters)
+    {
+      const std::string &directory = parameters.checkpoint.directory;
+      return directory.empty() ? results_directory(parameters) + "checkpoint" :
+                                 directory;
+    }
   } // namespace
 
 
@@ -26,17 +38,81 @@ namespace Viscoplastic
                           Console       &console,
                           TimerOutput   &timer,
                           const MPI_Comm communicator)
-    : run(run)
+    : checkpoints(checkpoint_directory(run.scene.parameters), communicator)
+    , run(run)
     , parameters(run.scene.parameters)
     , console(console)
     , timer(timer)
     , communicator(communicator)
-    , directories(parameters, console, communicator)
     , lines(run.scene)
     , schedule(parameters.checkpoint)
     , first_memory(memory_of_ranks(communicator).first)
   {
-    directories.lock();
+    lock();
+  }
+
+
+
+  template <int dim>
+  void
+  RunFiles<dim>::lock()
+  {
+    const std::string results = results_directory(parameters);
+    fail_together(communicator, [&]() {
+      if (Utilities::MPI::this_mpi_process(communicator) != 0)
+        return;
+      const std::string otherwise = "choose another 'Output/Directory' and "
+                                    "'Checkpoint/Directory'";
+      results_lock.acquire(results, otherwise);
+      std::error_code none;
+      if (!std::filesystem::equivalent(results, checkpoints.directory, none))
+        checkpoint_lock.acquire(checkpoints.directory, otherwise);
+    });
+  }
+
+
+
+  template <int dim>
+  std::optional<CheckpointManifest>
+  RunFiles<dim>::find_checkpoint(const CommandLine::Restart restart)
+  {
+    using Restart = CommandLine::Restart;
+    if (restart == Restart::no)
+      return {};
+    std::vector<std::string> remarks;
+    auto                     found = checkpoints.newest(remarks);
+    for (const std::string &remark : remarks)
+      console.remark("Warning: " + remark + '.');
+    AssertThrow(found || remarks.empty(),
+                ExcMessage("None of the " + std::to_string(remarks.size()) +
+                           " checkpoint(s) in '" + checkpoints.directory +
+                           "' can be used: " + remarks[0] + '.'));
+    AssertThrow(found || restart == Restart::automatic,
+                ExcMessage("There is no checkpoint in '" +
+                           checkpoints.directory +
+                           "'; begin without --restart, or name the place in "
+                           "'Checkpoint/Directory' or 'Output/Directory'."));
+    return found;
+  }
+
+
+
+  template <int dim>
+  void
+  RunFiles<dim>::begin_checkpoints()
+  {
+    if (schedule.is_regular() || parameters.checkpoint.wall_time_limit > 0.)
+      {
+        checkpoints.make_directory();
+        lock();
+      }
+    const CheckpointStore::Removal removal = checkpoints.remove_all();
+    for (const std::string &remark : removal.remarks)
+      console.remark(remark);
+    // Those of an earlier pass of this run need no words.
+    if (removal.n_checkpoints > 0 && !run.pass.follows_another)
+      console.remark("Note: the checkpoints of an earlier run in '" +
+                     checkpoints.directory + "' have been removed.");
   }
 
 
@@ -45,13 +121,16 @@ namespace Viscoplastic
   void
   RunFiles<dim>::begin()
   {
-    const bool follows_another = run.pass.follows_another;
-    directories.begin();
+    fail_together(communicator, [&]() {
+      if (Utilities::MPI::this_mpi_process(communicator) == 0)
+        make_results_directory(results_directory(parameters));
+    });
+    lock();
     output.emplace(run.scene, communicator);
-    if (follows_another)
+    if (run.pass.follows_another)
       output->resume({});
     lines.begin(directory());
-    directories.begin_checkpoints(follows_another);
+    begin_checkpoints();
     if (Utilities::MPI::this_mpi_process(communicator) == 0)
       run.recorder.write_to(std::make_unique<Statistics>(
         directory() + "statistics.csv", parameters.units, dim));
@@ -77,7 +156,7 @@ namespace Viscoplastic
                                   parameters.checkpoint.keep :
                                   std::numeric_limits<unsigned int>::max();
     for (const std::string &remark :
-         checkpoints().remove_others(n, n_kept).remarks)
+         checkpoints.remove_others(n, n_kept).remarks)
       console.remark(remark);
   }
 
@@ -152,7 +231,7 @@ namespace Viscoplastic
     std::ostringstream text;
     text << "step " << state.n << " (t = " << state.t
          << run.scene.unit(Quantity::time) << "): '"
-         << checkpoints().path(state.n) << "'";
+         << checkpoints.path(state.n) << "'";
     if (!stops)
       {
         // Regular ones need no words.
@@ -195,7 +274,11 @@ namespace Viscoplastic
         run.recorder.synchronize();
         lines.synchronize();
       }
-    directories.write_checkpoint(packed.manifest, packed.files);
+    checkpoints.make_directory(); // unless the scene has asked for checkpoints
+    lock();
+    for (const std::string &remark : checkpoints.write(
+           packed.manifest, packed.files, parameters.checkpoint.keep))
+      console.remark(remark);
   }
 
 

@@ -29,7 +29,7 @@ namespace Viscoplastic
       if (!scene.parameters.step_control.land_on_kinks ||
           !(control.is_on || scene.parameters.error_control.error_estimator))
         return;
-      const KinksOfScene found = find_kinks(scene, triangulation);
+      const KinksOfScene found = kinks_of_scene(scene, triangulation);
       if (found.kinks.empty())
         return;
       if (announcer != nullptr && control.is_on)

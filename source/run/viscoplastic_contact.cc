@@ -442,7 +442,7 @@ namespace Viscoplastic
   void
   ViscoplasticContact<dim>::resume(const CheckpointManifest &checkpoint)
   {
-    const CheckpointStore &store = files->checkpoints();
+    const CheckpointStore &store = files->checkpoints;
     RunArchive<dim>        archive(store, checkpoint, run_state, triangulation);
     const State<dim>      &state       = accepted.state;
     const bool             is_solution = accepted.is_solution;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <viscoplastic_contact/scene/jump_in_time.h>
+#include <viscoplastic_contact/scene/kinks_in_time.h>
 #include <viscoplastic_contact/scene/sample_places.h>
 
 #include <sstream>
@@ -8,15 +9,8 @@ namespace Viscoplastic
 {
   namespace
   {
-    /// A change by less than this part of the largest values is not called a
-    /// jump.
+    /// Of the largest values; changes by less than this part are small.
     constexpr double smallest_share = 0.05;
-    /// A change within this part of the end time is called a jump.
-    constexpr double width = 1e-12;
-    /// Intervals between which jumps are looked for, in all and in a phase.
-    constexpr unsigned int n_intervals = 200, least_intervals = 10;
-    /// Intervals that are halved.
-    constexpr unsigned int n_candidates = 4;
     /// Values have to leave those at both ends of a step by this part of their
     /// range in the run to be called unseen. A sine goes that far with
     /// about two steps a period, not with three.
@@ -26,41 +20,6 @@ namespace Viscoplastic
     constexpr unsigned int          n_steps_sampled = 200;
     constexpr std::array<double, 6> inside{
       {0.081, 0.233, 0.397, 0.514, 0.709, 0.887}};
-
-    struct Interval
-    {
-      double              left, right;
-      std::vector<double> at_left, at_right; // by place
-
-      double
-      change() const
-      {
-        double sum = 0.;
-        for (std::size_t i = 0; i < at_left.size(); ++i)
-          sum += std::fabs(at_right[i] - at_left[i]);
-        return sum;
-      }
-    };
-
-
-
-    std::vector<double>
-    sample_times(const TimeSchedule &schedule)
-    {
-      const unsigned int n =
-        std::max(least_intervals, n_intervals / schedule.n_phases());
-      std::vector<double> times{0.};
-      while (times.back() < schedule.end_time())
-        {
-          const TimeSchedule::Phase &phase = schedule.phase_at(times.back());
-          for (unsigned int i = 1; i < n; ++i)
-            times.push_back(phase.start + i * (phase.end - phase.start) / n);
-          times.push_back(phase.end);
-        }
-      return times;
-    }
-
-
 
     struct StepEnds
     {
@@ -101,68 +60,6 @@ namespace Viscoplastic
       return sum;
     }
   } // namespace
-
-
-
-  template <int dim>
-  std::optional<double>
-  find_jump(const Expression<dim>         &datum,
-            const std::vector<Point<dim>> &places,
-            const TimeSchedule            &schedule)
-  {
-    if (!datum.may_jump() || places.empty())
-      return {};
-    const auto values = [&](const double t) {
-      return values_at(datum, places, t);
-    };
-    try
-      {
-        std::vector<Interval> intervals;
-        double                left    = 0.;
-        auto                  at_left = values(left);
-        double                size    = sum_of_sizes(at_left);
-        for (const double right : sample_times(schedule))
-          if (right > left)
-            {
-              auto at_right = values(right);
-              size          = std::max(size, sum_of_sizes(at_right));
-              intervals.push_back({left, right, at_left, at_right});
-              left    = right;
-              at_left = std::move(at_right);
-            }
-
-        const auto n = std::min<std::size_t>(n_candidates, intervals.size());
-        std::partial_sort(intervals.begin(),
-                          intervals.begin() + n,
-                          intervals.end(),
-                          [](const Interval &a, const Interval &b) {
-                            return a.change() > b.change();
-                          });
-        for (std::size_t c = 0; c < n; ++c)
-          {
-            Interval &interval = intervals[c];
-            while (interval.change() > smallest_share * size &&
-                   interval.right - interval.left > width * schedule.end_time())
-              {
-                const double middle    = 0.5 * (interval.left + interval.right);
-                const auto   at_middle = values(middle);
-                Interval     first{interval.left,
-                               middle,
-                               interval.at_left,
-                               at_middle},
-                  second{middle, interval.right, at_middle, interval.at_right};
-                interval = first.change() > second.change() ? first : second;
-              }
-            if (interval.change() > smallest_share * size)
-              return interval.right;
-          }
-      }
-    catch (const ExceptionBase &)
-      {
-        // No value at a time that perhaps no step has.
-      }
-    return {};
-  }
 
 
 
@@ -256,7 +153,7 @@ namespace Viscoplastic
         {
           return true; // no value at a place that perhaps no node has
         }
-      return places.empty();
+      return false;
     }
 
 
@@ -299,26 +196,20 @@ namespace Viscoplastic
     const bool looks_into_steps =
       !chooses_steps(scene.parameters) &&
       !(scene.exact_solution && scene.exact_solution->makes_data);
-    const auto inspect = [&](const Expression<dim>         &datum,
-                             const std::vector<Point<dim>> &places) {
-      jumps.add(datum.name_of_entry(),
-                find_jump(datum, places, scene.schedule));
-      if (looks_into_steps)
-        unseen.add(datum.name_of_entry(),
-                   find_unseen_change(datum, places, scene.schedule));
-    };
+    for_each_datum_in_time<dim>(
+      scene,
+      triangulation,
+      [&](const Expression<dim> &datum, const std::vector<Point<dim>> &places) {
+        jumps.add(datum.name_of_entry(),
+                  find_jump(datum, places, scene.schedule));
+        if (looks_into_steps)
+          unseen.add(datum.name_of_entry(),
+                     find_unseen_change(datum, places, scene.schedule));
+      });
 
     std::vector<std::string> warnings;
     for (const auto &[id, condition] : scene.boundary)
       {
-        std::vector<Point<dim>> places;
-        for (const Expression<dim> *datum : condition.data())
-          if (datum->depends_on_time())
-            {
-              if (places.empty())
-                places = places_on_boundary(triangulation, id);
-              inspect(*datum, places);
-            }
         const std::string entry =
           "Boundary " + std::to_string(id) + "/Foundation motion";
         if ((condition.has_friction() || condition.is_glued()) &&
@@ -326,24 +217,15 @@ namespace Viscoplastic
               scene.parameters.boundaries.at(id).foundation_motion,
               dim,
               entry) &&
-            !slides(condition, places, scene.schedule))
+            !slides(condition,
+                    places_on_boundary(triangulation, id),
+                    scene.schedule))
           warnings.push_back(
             "'" + entry +
             "' moves nothing: what counts is how its tangential part changes "
             "in time, which it does not; 'Foundation displacement' moves the "
             "foundation in normal direction.");
       }
-    for (const auto *datum : {&scene.axial_force, &scene.axial_strain})
-      if (*datum && (*datum)->depends_on_time())
-        inspect(**datum, {Point<dim>()});
-    if (scene.body_force && scene.body_force->depends_on_time())
-      {
-        const auto places = places_in_body(triangulation);
-        for (unsigned int d = 0; d < dim; ++d)
-          inspect((*scene.body_force)[d], places);
-      }
-    if (scene.temperature && scene.temperature->value.depends_on_time())
-      inspect(scene.temperature->value, places_in_body(triangulation));
 
     // (2.10) excludes them.
     if (!jumps.list.empty())
@@ -368,7 +250,6 @@ namespace Viscoplastic
 
 
 
-  VISCOPLASTIC_INSTANTIATE(find_jump);
   VISCOPLASTIC_INSTANTIATE(find_unseen_change);
   VISCOPLASTIC_INSTANTIATE(warnings_of_data_in_time);
 } // namespace Viscoplastic

@@ -249,33 +249,61 @@ namespace Viscoplastic
 
 
   template <int dim>
+  std::optional<double>
+  find_jump(const Expression<dim>         &datum,
+            const std::vector<Point<dim>> &places,
+            const TimeSchedule            &schedule)
+  {
+    if (!datum.may_jump() || places.empty())
+      return {};
+    for (const Kink &kink : find_kinks(datum, places, schedule))
+      if (kink.is_jump)
+        return kink.t;
+    // Those at both ends of the run make no kinks.
+    const double end = schedule.end_time(), near = 10. * accuracy * end;
+    try
+      {
+        double size = 0.;
+        for (const double share : {0., 0.1, 0.3, 0.5, 0.7, 0.9, 1.})
+          for (const double value : values_at(datum, places, share * end))
+            size = std::max(size, std::fabs(value));
+        for (const auto &[left, right] :
+             {std::make_pair(0., near), std::make_pair(end - near, end)})
+          {
+            const auto before = values_at(datum, places, left),
+                       after  = values_at(datum, places, right);
+            double change     = 0.;
+            for (std::size_t p = 0; p < before.size(); ++p)
+              change += std::fabs(after[p] - before[p]);
+            if (change > least_share * size * before.size())
+              return left > 0. ? end : 0.;
+          }
+      }
+    catch (const ExceptionBase &)
+      {} // no value at a time that perhaps no step has
+    return {};
+  }
+
+
+
+  template <int dim>
   KinksOfScene
-  find_kinks(const Scene<dim> &scene, const Triangulation<dim> &triangulation)
+  kinks_of_scene(const Scene<dim>         &scene,
+                 const Triangulation<dim> &triangulation)
   {
     KinksOfScene result;
-    const auto   inspect = [&](const Expression<dim>         &datum,
-                             const std::vector<Point<dim>> &places) {
-      const auto found = find_kinks(datum, places, scene.schedule);
-      result.kinks.insert(result.kinks.end(), found.begin(), found.end());
-      auto &entries = result.entries;
-      if (!found.empty() &&
-          std::find(entries.begin(), entries.end(), datum.name_of_entry()) ==
-            entries.end())
-        entries.push_back(datum.name_of_entry());
-    };
-    for (const auto &[id, condition] : scene.boundary)
-      for (const Expression<dim> *datum : condition.data())
-        if (datum->may_have_kinks())
-          inspect(*datum, places_on_boundary(triangulation, id));
-    for (const auto *datum : {&scene.axial_force, &scene.axial_strain})
-      if (*datum && (*datum)->may_have_kinks())
-        inspect(**datum, {Point<dim>()});
-    if (scene.body_force)
-      for (unsigned int d = 0; d < dim; ++d)
-        if ((*scene.body_force)[d].may_have_kinks())
-          inspect((*scene.body_force)[d], places_in_body(triangulation));
-    if (scene.temperature && scene.temperature->value.may_have_kinks())
-      inspect(scene.temperature->value, places_in_body(triangulation));
+    for_each_datum_in_time<dim>(
+      scene,
+      triangulation,
+      [&](const Expression<dim> &datum, const std::vector<Point<dim>> &places) {
+        const auto found = find_kinks(datum, places, scene.schedule);
+        result.kinks.insert(result.kinks.end(), found.begin(), found.end());
+        auto &entries = result.entries;
+        if (!found.empty() &&
+            std::find(entries.begin(), entries.end(), datum.name_of_entry()) ==
+              entries.end())
+          entries.push_back(datum.name_of_entry());
+      });
 
     // Those of several data at the same time are one.
     std::vector<Kink> &kinks = result.kinks;
@@ -295,16 +323,7 @@ namespace Viscoplastic
 
 
 
-  template std::vector<Kink>
-  find_kinks(const Expression<2> &,
-             const std::vector<Point<2>> &,
-             const TimeSchedule &);
-  template KinksOfScene
-  find_kinks(const Scene<2> &, const Triangulation<2> &);
-  template std::vector<Kink>
-  find_kinks(const Expression<3> &,
-             const std::vector<Point<3>> &,
-             const TimeSchedule &);
-  template KinksOfScene
-  find_kinks(const Scene<3> &, const Triangulation<3> &);
+  VISCOPLASTIC_INSTANTIATE(find_kinks);
+  VISCOPLASTIC_INSTANTIATE(find_jump);
+  VISCOPLASTIC_INSTANTIATE(kinks_of_scene);
 } // namespace Viscoplastic

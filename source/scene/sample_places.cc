@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <deal.II/base/quadrature_lib.h>
 
-#include <viscoplastic_contact/base/types.h>
 #include <viscoplastic_contact/scene/sample_places.h>
 
 #include <algorithm>
@@ -88,7 +87,33 @@ namespace Viscoplastic
 
 
 
+  template <int dim>
+  void
+  for_each_datum_in_time(
+    const Scene<dim>                                           &scene,
+    const Triangulation<dim>                                   &triangulation,
+    const std::function<void(const Expression<dim> &,
+                             const std::vector<Point<dim>> &)> &visit)
+  {
+    for (const auto &[id, condition] : scene.boundary)
+      for (const Expression<dim> *datum : condition.data())
+        if (datum->depends_on_time())
+          visit(*datum, places_on_boundary(triangulation, id));
+    for (const auto *datum : {&scene.axial_force, &scene.axial_strain})
+      if (*datum && (*datum)->depends_on_time())
+        visit(**datum, {Point<dim>()});
+    if (scene.body_force)
+      for (unsigned int d = 0; d < dim; ++d)
+        if ((*scene.body_force)[d].depends_on_time())
+          visit((*scene.body_force)[d], places_in_body(triangulation));
+    if (scene.temperature && scene.temperature->value.depends_on_time())
+      visit(scene.temperature->value, places_in_body(triangulation));
+  }
+
+
+
   VISCOPLASTIC_INSTANTIATE(places_on_boundary);
   VISCOPLASTIC_INSTANTIATE(places_in_body);
   VISCOPLASTIC_INSTANTIATE(values_at);
+  VISCOPLASTIC_INSTANTIATE(for_each_datum_in_time);
 } // namespace Viscoplastic

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <viscoplastic_contact/base/instantiate_member.h>
 #include <viscoplastic_contact/scene/scene.h>
 
 #include <algorithm>
@@ -179,12 +180,6 @@ namespace Viscoplastic
 
 
 
-  template std::vector<std::string>
-  Scene<2>::effects() const;
-  template std::vector<std::string>
-  Scene<2>::changed_defaults() const;
-  template std::vector<std::string>
-  Scene<3>::effects() const;
-  template std::vector<std::string>
-  Scene<3>::changed_defaults() const;
+  VISCOPLASTIC_INSTANTIATE_MEMBER(Scene, effects);
+  VISCOPLASTIC_INSTANTIATE_MEMBER(Scene, changed_defaults);
 } // namespace Viscoplastic

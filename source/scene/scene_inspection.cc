@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <viscoplastic_contact/base/instantiate_member.h>
 #include <viscoplastic_contact/base/messages.h>
 #include <viscoplastic_contact/mesh/mesh_check.h>
 #include <viscoplastic_contact/mesh/mesh_ids.h>
@@ -409,8 +410,5 @@ namespace Viscoplastic
 
 
 
-  template void
-  Scene<2>::inspect(const parallel::distributed::Triangulation<2> &);
-  template void
-  Scene<3>::inspect(const parallel::distributed::Triangulation<3> &);
+  VISCOPLASTIC_INSTANTIATE_MEMBER(Scene, inspect);
 } // namespace Viscoplastic

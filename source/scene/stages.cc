@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <viscoplastic_contact/base/instantiate_member.h>
 #include <viscoplastic_contact/scene/scene.h>
 
 #include <algorithm>
@@ -226,28 +227,9 @@ namespace Viscoplastic
 
 
 
-  template void
-  Scene<2>::inspect_contact_of_stages(
-    const std::set<types::material_id> &,
-    const parallel::distributed::Triangulation<2> &);
-  template void
-  Scene<3>::inspect_contact_of_stages(
-    const std::set<types::material_id> &,
-    const parallel::distributed::Triangulation<3> &);
-  template void
-  Scene<2>::find_stages(const parallel::distributed::Triangulation<2> &);
-  template void
-  Scene<3>::find_stages(const parallel::distributed::Triangulation<3> &);
-  template unsigned int
-  Scene<2>::stage_of_step_to(const double) const;
-  template unsigned int
-  Scene<3>::stage_of_step_to(const double) const;
-  template std::vector<std::string>
-  Scene<2>::absent_materials() const;
-  template std::vector<std::string>
-  Scene<3>::absent_materials() const;
-  template void
-  Scene<2>::enter_stage(const unsigned int);
-  template void
-  Scene<3>::enter_stage(const unsigned int);
+  VISCOPLASTIC_INSTANTIATE_MEMBER(Scene, inspect_contact_of_stages);
+  VISCOPLASTIC_INSTANTIATE_MEMBER(Scene, find_stages);
+  VISCOPLASTIC_INSTANTIATE_MEMBER(Scene, stage_of_step_to);
+  VISCOPLASTIC_INSTANTIATE_MEMBER(Scene, absent_materials);
+  VISCOPLASTIC_INSTANTIATE_MEMBER(Scene, enter_stage);
 } // namespace Viscoplastic

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <deal.II/base/mpi.h>
 
+#include <viscoplastic_contact/base/instantiate_member.h>
 #include <viscoplastic_contact/base/messages.h>
 #include <viscoplastic_contact/time_stepping/step_solver.h>
 
@@ -292,16 +293,5 @@ namespace Viscoplastic
 
 
 
-  template ContactReport
-  StepSolver<2>::solve(const StepProblem<2> &,
-                       const DistributedVector &,
-                       const double,
-                       DistributedVector &,
-                       ContactState &);
-  template ContactReport
-  StepSolver<3>::solve(const StepProblem<3> &,
-                       const DistributedVector &,
-                       const double,
-                       DistributedVector &,
-                       ContactState &);
+  VISCOPLASTIC_INSTANTIATE_MEMBER(StepSolver, solve);
 } // namespace Viscoplastic

@@ -2,6 +2,7 @@
 #include <deal.II/base/mpi.h>
 
 #include <viscoplastic_contact/base/heartbeat.h>
+#include <viscoplastic_contact/base/instantiate_member.h>
 #include <viscoplastic_contact/base/messages.h>
 #include <viscoplastic_contact/discretization/implicit_flow.h>
 #include <viscoplastic_contact/time_stepping/implicit_step.h>
@@ -482,8 +483,5 @@ namespace Viscoplastic
 
 
 
-  template StepSolution<2>
-  ImplicitStep<2>::advance(const StepProblem<2> &);
-  template StepSolution<3>
-  ImplicitStep<3>::advance(const StepProblem<3> &);
+  VISCOPLASTIC_INSTANTIATE_MEMBER(ImplicitStep, advance);
 } // namespace Viscoplastic

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <viscoplastic_contact/base/instantiate_member.h>
 #include <viscoplastic_contact/time_stepping/step_method.h>
 
 namespace Viscoplastic
@@ -103,13 +104,6 @@ namespace Viscoplastic
 
 
 
-  template void
-  StepSolution<2>::stay(const StepProblem<2> &,
-                        const AdmissibleSpace<2> &,
-                        const ContactFace<2> *);
-  template void
-  StepSolution<3>::stay(const StepProblem<3> &,
-                        const AdmissibleSpace<3> &,
-                        const ContactFace<3> *);
+  VISCOPLASTIC_INSTANTIATE_MEMBER(StepSolution, stay);
   VISCOPLASTIC_INSTANTIATE(data_are_unchanged);
 } // namespace Viscoplastic

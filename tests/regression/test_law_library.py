@@ -4,6 +4,7 @@ source tree and held to the law `parsed`, which takes the same formula from the
 parameter file; libraries that are refused."""
 
 import json
+import os
 import re
 import shutil
 import subprocess
@@ -11,7 +12,7 @@ import tempfile
 from pathlib import Path
 
 import law_example
-from harness import EXECUTABLE, TestCase, main, run, run_program
+from harness import EXECUTABLE, SOURCE, TestCase, main, run, run_program
 
 # Where the package files of the build are.
 PACKAGE = Path(EXECUTABLE).parent
@@ -244,7 +245,8 @@ class Example(Libraries):
         (there / "described.prm").write_text(described)
         run_program(["--check", there / "described.prm"], 1, there, code=0)
         manual = subprocess.run(
-            [EXECUTABLE, "--describe=markdown", scene],
+            [SOURCE / "contrib" / "make_parameters", scene],
+            env={**os.environ, "VISCOPLASTIC_CONTACT": str(EXECUTABLE)},
             stdout=subprocess.PIPE,
             text=True,
         ).stdout

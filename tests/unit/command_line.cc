@@ -30,8 +30,8 @@ namespace
     EXPECT_EQ(read_command_line({"-h"}).task, Task::help);
     EXPECT_EQ(read_command_line({"--version"}).task, Task::version);
     EXPECT_EQ(read_command_line({"--describe"}).task, Task::describe);
-    EXPECT_EQ(read_command_line({"--describe=markdown"}).task,
-              Task::describe_as_markdown);
+    EXPECT_EQ(read_command_line({"--describe=json"}).task,
+              Task::describe_as_json);
     const CommandLine line = read_command_line({"a.prm",
                                                 "--set",
                                                 "A/B=c=d",
@@ -65,7 +65,8 @@ namespace
     };
     refused({"--chek", "a.prm"},
             "There is no option '--chek'; did you mean --check?");
-    refused({"-x", "a.prm"}, "There is no option '-x'; the options are --help");
+    refused({"-x", "a.prm"},
+            "There is no option '-x'; the options are --check");
     refused({"a.prm", "--set"}, "--set needs 'Section/Entry=value' after it.");
     refused({"a.prm", "--log"}, "--log needs the name of a file after it.");
     refused({"--log", "a.prm", "b.prm"}, "would overwrite 'a.prm'");
@@ -75,16 +76,11 @@ namespace
     EXPECT_EQ(read_command_line({"--describe", "a.prm"}).files.size(), 1u);
     refused({"--describe", "--set", "a=b"}, "goes without --set where");
     refused({"--version", "a.prm"}, "goes without parameter files");
-    refused({"--describe=html"}, "the values prm and markdown, not 'html'.");
+    refused({"--describe=html"}, "the values prm and json, not 'html'.");
     refused({"--quiet=yes", "a.prm"}, "--quiet has no value");
     refused({"--check=xml", "a.prm"}, "the values json and means, not 'xml'.");
     refused({"--check", "--restart", "a.prm"},
             "--check and --restart exclude each other.");
-    // What earlier versions had.
-    refused({"study", "a.prm"}, "contrib/study scene.prm.");
-    refused({"--quiet", "effects", "a.prm"}, "contrib/effects scene.prm.");
-    refused({"--price=0.1", "a.prm"}, "contrib/price 0.01 scene.prm.");
-    refused({"a.prm", "--price", "0.1"}, "contrib/price 0.01 scene.prm.");
     refused({"a.prm", "Time/Phases=1: 2"}, "write --set 'Time/Phases=1: 2'.");
   }
 

@@ -4,6 +4,7 @@
 // wander.  What data do within time steps, where the run does not see it.
 
 #include <viscoplastic_contact/scene/jump_in_time.h>
+#include <viscoplastic_contact/scene/kinks_in_time.h>
 
 #include <gtest/gtest.h>
 
@@ -42,7 +43,7 @@ namespace
 
   TEST(JumpInTime, IsFoundWhereItIs)
   {
-    for (const char *time : {"0.37", "0.5", "1.23456789", "1.999999"})
+    for (const char *time : {"0.37", "0.5", "1.23456789", "2"})
       {
         const std::string t = time;
         for (const std::string &text : {"if(t < " + t + ", 0, 1)",
@@ -52,7 +53,7 @@ namespace
           {
             const auto jump = jump_of(text);
             ASSERT_TRUE(jump) << text;
-            EXPECT_NEAR(*jump, std::stod(t), 1e-11) << text;
+            EXPECT_NEAR(*jump, std::stod(t), 2e-10) << text;
           }
       }
     // Right after the initial state.

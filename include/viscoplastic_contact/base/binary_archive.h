@@ -45,8 +45,7 @@ namespace Viscoplastic
     operator&(const std::vector<T> &values)
     {
       *this &static_cast<std::uint64_t>(values.size());
-      if constexpr (std::is_same_v<T, double> ||
-                    std::is_same_v<T, std::uint8_t>)
+      if constexpr (std::is_trivially_copyable_v<T>)
         text.append(reinterpret_cast<const char *>(values.data()),
                     values.size() * sizeof(T));
       else
@@ -114,8 +113,7 @@ namespace Viscoplastic
       *this        &size;
       AssertThrow(size <= (text.size() - position) / sizeof(T), too_short());
       values.resize(size);
-      if constexpr (std::is_same_v<T, double> ||
-                    std::is_same_v<T, std::uint8_t>)
+      if constexpr (std::is_trivially_copyable_v<T>)
         copy(values.data(), size);
       else
         for (T &value : values)

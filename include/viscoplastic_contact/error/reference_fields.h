@@ -3,7 +3,6 @@
 
 #include <viscoplastic_contact/error/solution_errors.h>
 
-#include <array>
 #include <string>
 #include <vector>
 
@@ -15,20 +14,39 @@ namespace Viscoplastic
   template <int dim>
   struct FieldSamples
   {
-    static constexpr unsigned int n_stresses = dim == 2 ? 4 : 6;
+    // deal.II sends what has serialize().
+    struct CellPoint
+    {
+      Point<dim>     x;
+      double         weight; // the volume
+      Tensor<1, dim> u;
+      Tensor<2, dim> gradient;
+      /// The mean of div u over the cell, and the strain zz.
+      double dilatation, strain_zz;
+      /// The mean over the cell.
+      SymmetricTensor<2, 3> stress;
 
-    // x, weight (the volume), u, grad u row by row, the mean of div u over the
-    // cell, and the cell mean of the stress in the order of the parameter file.
-    static constexpr unsigned int u_index          = dim + 1;
-    static constexpr unsigned int gradient_index   = u_index + dim;
-    static constexpr unsigned int dilatation_index = gradient_index + dim * dim;
-    static constexpr unsigned int zz_index         = dilatation_index + 1;
-    static constexpr unsigned int stress_index     = zz_index + 1;
-    using CellPoint = std::array<double, stress_index + n_stresses>;
+      template <typename Archive>
+      void
+      serialize(Archive &archive, const unsigned int)
+      {
+        archive &x &weight &u &gradient &dilatation &strain_zz &stress;
+      }
+    };
 
-    // x, weight, lambda.
-    static constexpr unsigned int multiplier_index = dim + 1;
-    using FacePoint = std::array<double, multiplier_index + dim>;
+    struct FacePoint
+    {
+      Point<dim>     x;
+      double         weight; // the area over the number of points
+      Tensor<1, dim> multiplier;
+
+      template <typename Archive>
+      void
+      serialize(Archive &archive, const unsigned int)
+      {
+        archive &x &weight &multiplier;
+      }
+    };
 
     double                 t = 0.;
     std::vector<CellPoint> cells;

@@ -14,10 +14,10 @@ namespace Viscoplastic
   describe_parameters(const std::vector<std::string> &files     = {},
                       const std::vector<std::string> &overrides = {});
 
-  /// A chapter of the manual with all entries, doc/parameters.md, with those of
-  /// laws in the shared libraries of the scene.
+  /// The same for programs, without values: `introduction', by name what is
+  /// said of `sections', and all `entries' with those of laws in the shared
+  /// libraries of the scene.
   std::string
-  describe_parameters_as_markdown(
-    const std::vector<std::string> &files     = {},
-    const std::vector<std::string> &overrides = {});
+  describe_parameters_as_json(const std::vector<std::string> &files     = {},
+                              const std::vector<std::string> &overrides = {});
 } // namespace Viscoplastic

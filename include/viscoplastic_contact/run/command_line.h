@@ -15,7 +15,7 @@ namespace Viscoplastic
       help,
       version,
       describe,
-      describe_as_markdown,
+      describe_as_json,
       check,
       print_scene,
       run

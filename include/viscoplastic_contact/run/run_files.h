@@ -4,12 +4,13 @@
 #include <deal.II/base/timer.h>
 
 #include <viscoplastic_contact/base/console.h>
+#include <viscoplastic_contact/base/files.h>
 #include <viscoplastic_contact/base/signals.h>
 #include <viscoplastic_contact/checkpoint/checkpoint_schedule.h>
 #include <viscoplastic_contact/checkpoint/run_archive.h>
 #include <viscoplastic_contact/results/line_output.h>
 #include <viscoplastic_contact/results/output.h>
-#include <viscoplastic_contact/run/run_directories.h>
+#include <viscoplastic_contact/run/command_line.h>
 
 #include <optional>
 #include <string>
@@ -33,16 +34,10 @@ namespace Viscoplastic
 
     /// The checkpoint to go on from, if the run is to go on and there is one.
     std::optional<CheckpointManifest>
-    find_checkpoint(const CommandLine::Restart restart)
-    {
-      return directories.find_checkpoint(restart);
-    }
+    find_checkpoint(const CommandLine::Restart restart);
 
-    const CheckpointStore &
-    checkpoints() const
-    {
-      return directories.checkpoints;
-    }
+    /// Where the scene keeps its checkpoints.
+    const CheckpointStore checkpoints;
 
     /// The directory of the results; ends with a slash.
     const std::string &
@@ -90,6 +85,16 @@ namespace Viscoplastic
           const std::vector<std::string> &remarks);
 
   private:
+    /// Lock the directories of results and checkpoints, as far as they exist
+    /// and are not locked yet, so that other processes keep out of them.
+    void
+    lock();
+
+    /// Remove the checkpoints of an earlier run, which go with its results, and
+    /// make sure that there is a place for those of this one.
+    void
+    begin_checkpoints();
+
     void
     write_checkpoint(
       const parallel::distributed::Triangulation<dim> &triangulation,
@@ -102,7 +107,7 @@ namespace Viscoplastic
     const MPI_Comm             communicator;
     const Discretization<dim> *discretization = nullptr;
 
-    RunDirectories                directories;
+    DirectoryLock                 results_lock, checkpoint_lock; // on rank 0
     std::optional<Output<dim>>    output; // from begin() or resume() on
     LineOutput<dim>               lines;
     CheckpointSchedule            schedule;

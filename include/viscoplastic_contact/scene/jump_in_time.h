@@ -9,20 +9,6 @@
 
 namespace Viscoplastic
 {
-  /// A time at which a datum jumps at these places together, which the theory
-  /// excludes: data are Lipschitz continuous in time, (2.10). Found by halving
-  /// the intervals with the largest changes until only a jump is left; it has
-  /// to be more than a twentieth of the largest values, so that a load that
-  /// wanders from place to place is none. Pulses shorter than a 200th of a
-  /// phase may be overlooked. Costs nothing where the text of the expression
-  /// has nothing that can jump.
-  template <int dim>
-  std::optional<double>
-  find_jump(const Expression<dim>         &datum,
-            const std::vector<Point<dim>> &places,
-            const TimeSchedule            &schedule);
-
-
   /// A time within a step at which a datum is far from its values at both ends
   /// of the step, so that a run with these steps does not see what it does: a
   /// load that vibrates in time with the steps, or a short blow. Far is two

@@ -3,6 +3,7 @@
 
 #include <viscoplastic_contact/scene/scene.h>
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -30,6 +31,15 @@ namespace Viscoplastic
              const std::vector<Point<dim>> &places,
              const TimeSchedule            &schedule);
 
+  /// A time at which a datum jumps at these places together, which the theory
+  /// excludes: data are Lipschitz continuous in time, (2.10). One that
+  /// find_kinks() finds, or at either end of the run.
+  template <int dim>
+  std::optional<double>
+  find_jump(const Expression<dim>         &datum,
+            const std::vector<Point<dim>> &places,
+            const TimeSchedule            &schedule);
+
 
   /// Times at which steps should end because of the data of a scene.
   struct KinksOfScene
@@ -43,5 +53,6 @@ namespace Viscoplastic
   /// ranks.
   template <int dim>
   KinksOfScene
-  find_kinks(const Scene<dim> &scene, const Triangulation<dim> &triangulation);
+  kinks_of_scene(const Scene<dim>         &scene,
+                 const Triangulation<dim> &triangulation);
 } // namespace Viscoplastic

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
-#include <deal.II/grid/tria.h>
+#include <viscoplastic_contact/scene/scene.h>
 
-#include <viscoplastic_contact/base/expression.h>
-
+#include <functional>
 #include <vector>
 
 namespace Viscoplastic
@@ -29,4 +28,14 @@ namespace Viscoplastic
   values_at(const Expression<dim>         &datum,
             const std::vector<Point<dim>> &places,
             const double                   t);
+
+  /// Call @p visit for each load, displacement, datum of friction and
+  /// temperature that depends on time, with the places where it acts.
+  template <int dim>
+  void
+  for_each_datum_in_time(
+    const Scene<dim>         &scene,
+    const Triangulation<dim> &triangulation,
+    const std::function<void(const Expression<dim>         &datum,
+                             const std::vector<Point<dim>> &places)> &visit);
 } // namespace Viscoplastic

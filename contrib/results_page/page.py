@@ -19,7 +19,7 @@ TEMPLATE = """\
 
 How fast errors fall, what an error costs, and how near estimates are to errors. Made by
 `contrib/make_results`, which runs the program and writes every number; the line under
-each part names version, machine and date. `contrib/study scene.prm` makes the same of your
+each part names version, machine and date. Each run is of one process. `contrib/study scene.prm` makes the same of your
 own scene ([study.md](study.md)).
 
 ## How to read this page

@@ -230,7 +230,8 @@ namespace Viscoplastic
           with_tables<dim>(parser).set_additional_variable(additional);
         result = parser->value(x);
       }
-    require_finite(result, x, t);
+    if (!std::isfinite(result))
+      require_finite(result, x, t);
     return result;
   }
 

@@ -2,6 +2,7 @@
 #include <viscoplastic_contact/scene/kinks_in_time.h>
 #include <viscoplastic_contact/scene/sample_places.h>
 
+#include <array>
 #include <numeric>
 
 namespace Viscoplastic
@@ -21,9 +22,12 @@ namespace Viscoplastic
     /// smooth: halves of a window begin at its eighths.
     constexpr double       least_fall       = 0.04;
     constexpr unsigned int n_levels_to_tell = 3;
+    /// In one of half the width 3/8 and 1/4: most windows need no other.
+    constexpr double least_first_fall = 0.28;
     /// They also begin an eighth before and after: rounding may put a jump at
-    /// the end of a window outside of it.
-    constexpr int first_shift = -1, last_shift = 5;
+    /// the end of a window outside of it. Their ends and middles are at
+    /// eighths.
+    constexpr int n_eighths = 11, first_eighth = -1;
     /// More than that are no kinks but noise.
     constexpr std::size_t most_kinks = 1000;
 
@@ -110,15 +114,15 @@ namespace Viscoplastic
         return n > 0 && n >= least_places * n_moving;
       }
 
-      /// The second differences over [t, t + width] with its middle, by place.
-      std::vector<double>
-      second_differences(const double t, const double width) const
+      /// The second differences of values at three times, by place.
+      static std::vector<double>
+      second_differences(std::vector<double>        left,
+                         const std::vector<double> &middle,
+                         const std::vector<double> &right)
       {
-        std::vector<double> result = values(t);
-        const auto middle = values(t + 0.5 * width), right = values(t + width);
-        for (std::size_t p = 0; p < result.size(); ++p)
-          result[p] = std::fabs(result[p] - 2. * middle[p] + right[p]);
-        return result;
+        for (std::size_t p = 0; p < left.size(); ++p)
+          left[p] = std::fabs(left[p] - 2. * middle[p] + right[p]);
+        return left;
       }
 
       static double
@@ -131,34 +135,44 @@ namespace Viscoplastic
       void
       look_into(double start, const double end)
       {
-        double              width       = end - start;
-        std::vector<double> differences = second_differences(start, width);
-        double              earlier     = sum(differences);
-        const double        path        = sum(paths);
+        double              width = end - start;
+        std::vector<double> differences =
+          second_differences(values(start),
+                             values(start + 0.5 * width),
+                             values(end));
+        double       earlier = sum(differences);
+        const double path    = sum(paths);
         for (unsigned int level = 1; width > accuracy * end_time; ++level)
           {
             // What would be none if all of it were at one time.
             if (!(sum(differences) >
                   1e-6 * least_share * path * width / end_time))
               return;
-            const double first = start;
-            differences.clear();
-            for (int s = first_shift; s <= last_shift; ++s)
+            std::array<double, n_eighths>              t;
+            std::array<std::vector<double>, n_eighths> at; // within the run
+            for (int i = 0; i < n_eighths; ++i)
               {
-                const double shifted = first + s * width / 8.;
-                if (shifted < 0. || shifted + 0.5 * width > end_time)
-                  continue;
-                auto there = second_differences(shifted, 0.5 * width);
-                if (differences.empty() || sum(there) > sum(differences))
-                  {
-                    differences = std::move(there);
-                    start       = shifted;
-                  }
+                t[i] = start + (i + first_eighth) * width / 8.;
+                if (t[i] >= 0. && t[i] <= end_time)
+                  at[i] = values(t[i]);
               }
+            differences.clear();
+            for (int i = 0; i + 4 < n_eighths; ++i)
+              if (!at[i].empty() && !at[i + 4].empty())
+                {
+                  auto there = second_differences(at[i], at[i + 2], at[i + 4]);
+                  if (differences.empty() || sum(there) > sum(differences))
+                    {
+                      differences = std::move(there);
+                      start       = t[i];
+                    }
+                }
             width *= 0.5;
+            const double now = sum(differences);
+            if (level == 1 && !(now > least_first_fall * earlier))
+              return;
             if (level % n_levels_to_tell != 0)
               continue;
-            const double now = sum(differences);
             const double largest =
               *std::max_element(differences.begin(), differences.end());
             if (!(now > least_fall * earlier) ||

@@ -334,6 +334,54 @@ class Creep(TestCase):
         velocity = 0.5 * self.RATE * strength**n / 100**2
         self.assertClose(sphere["point0_velocity_x"][-1], velocity, relative=0.01)
 
+    def test_closure_of_borehole_and_cavern(self):
+        """The steady velocity of the wall in rock that ends after 1e6 and 1e3 radii,
+        which is 3e-4 and 3e-3 of it; rings grow with r. Second order."""
+        rate, n, p = 6e-6, 3, 15
+        rock = {
+            "Material/Young's modulus": 25000,
+            "Material/Poisson's ratio": 0.25,
+            "Material/Law": "norton",
+            "Material/norton/Rate factor": rate,
+            "Material/norton/Exponent": n,
+            "Material/norton/Stress cap": 60,
+            "Initial state/Stress": "-20; -20; -20; 0",
+            "Time/Scheme": "backward Euler",
+            "Time/Phases": "1: 4, 100: 6, 1e4: 6, 1e6: 6, 1e8: 6",
+            "Output/Points": "1, 0",
+            "Output/Point fields": "velocity",
+        }
+        sides = (
+            {"Role": "traction", "Pressure": f"20 - {p}*min(t, 1)"},
+            {"Role": "traction", "Pressure": 20},
+            *("symmetry", "symmetry"),
+        )
+        for cells, shape, known, ends in (
+            (
+                *("48, 1", "1e6^x; y"),
+                np.sqrt(0.75) ** (n + 1) * (2 * p / n) ** n,
+                1e6 ** (-2 / n),
+            ),
+            (
+                *("30, 10", "1e3^x*cos(pi/2*y); 1e3^x*sin(pi/2*y)"),
+                0.5 * (3 * p / 2 / n) ** n,
+                1e3 ** (-3 / n),
+            ),
+        ):
+            with self.subTest(shape):
+                errors = []
+                for refinements in 0, 1:
+                    more = {
+                        "Geometry/Coordinates": shape,
+                        "Geometry/Global refinements": refinements,
+                    }
+                    hole = compute(box(cells, "0, 0 : 1, 1", *sides, **rock, **more))
+                    closure = -hole["point0_velocity_x"][-1] / rate
+                    errors.append(1 - closure * (1 - ends) ** n / known)
+                # measured: 0.045, 0.012; 0.083, 0.026
+                self.assertLess(errors[1], 0.03)
+                self.assertGreater(np.log2(errors[0] / errors[1]), 1.6)
+
 
 class Contact(TestCase):
     def test_hertz(self):

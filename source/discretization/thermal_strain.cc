@@ -34,11 +34,13 @@ namespace Viscoplastic
 
     template <int dim>
     void
-    refuse_below_zero(const Material<dim> &material,
-                      const double         T,
-                      const Point<dim>    &x,
-                      const double         t)
+    require_absolute(const Material<dim> &material,
+                     const double         T,
+                     const Point<dim>    &x,
+                     const double         t)
     {
+      if (T > 0.)
+        return;
       std::ostringstream message;
       message << "'Temperature/Value' is " << T << " at x = (" << x
               << "), t = " << t << ", but '" << material.section
@@ -92,24 +94,23 @@ namespace Viscoplastic
     auto                   result = std::make_shared<Samples>();
     std::vector<double>   &values = result->temperature;
     result->t                     = t;
-    values.resize(size, 0.);
+    values.reserve(size);
     fail_together(stress_space.space.communicator, [&] {
       if (!T.depends_on_position())
         values.assign(size, T.value(Point<dim>(), t));
       else
-        for (std::size_t c = 0, i = 0; c < stress_space.n_cells(); ++c)
-          for (unsigned int s = 0; s < n; ++s, ++i)
-            values[i] = T.value(stress_space.position(c, s), t);
+        for (std::size_t c = 0; c < stress_space.n_cells(); ++c)
+          for (unsigned int s = 0; s < n; ++s)
+            values.push_back(T.value(stress_space.position(c, s), t));
       for (std::size_t c = 0; c < stress_space.n_cells(); ++c)
         if (const Material<dim> &material =
               scene.material(stress_space.space.cells[c]->material_id());
             material.needs_absolute_temperature())
           for (unsigned int s = 0; s < n; ++s)
-            if (!(values[c * n + s] > 0.))
-              refuse_below_zero(material,
-                                values[c * n + s],
-                                stress_space.position(c, s),
-                                t);
+            require_absolute(material,
+                             values[c * n + s],
+                             stress_space.position(c, s),
+                             t);
     });
     if (!reference.empty())
       {
@@ -166,13 +167,10 @@ namespace Viscoplastic
     const auto         before = at(t_old), now = at(t);
     const unsigned int n = stress_space.n_samples;
     for (std::size_t c = 0, i = 0; c < expansion.size(); ++c)
-      {
-        const SymmetricTensor<2, 3> unit = stress(stress_space.moduli(c), 1.);
-        for (unsigned int s = 0; s < n; ++s, ++i)
-          if (const double change = now->strain[i] - before->strain[i];
-              change != 0.)
-            z[i] += change * unit;
-      }
+      for (unsigned int s = 0; s < n; ++s, ++i)
+        if (const double change = now->strain[i] - before->strain[i];
+            change != 0.)
+          z[i] += stress(stress_space.moduli(c), change);
   }
 
 

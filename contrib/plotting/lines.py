@@ -16,9 +16,14 @@ MOST_PANELS = 12  # of a line
 PLACE = ("step", "t", "s", "x", "y", "z")
 
 
-def some_times(count):
-    """Indices of at most MOST_TIMES of so many times, the first and last too."""
-    return np.unique(np.linspace(0, count - 1, min(count, MOST_TIMES)).round().astype(int))
+def some_times(times):
+    """Indices of at most MOST_TIMES of these times, spread over them as evenly as they
+    allow, the first and last too."""
+    times = np.asarray(times)
+    if len(times) <= MOST_TIMES:
+        return range(len(times))
+    wanted = np.linspace(times[0], times[-1], MOST_TIMES)
+    return np.unique(np.abs(times[:, None] - wanted).argmin(axis=0))
 
 
 def tables(line):
@@ -101,7 +106,7 @@ def draw(results, options):
 
 
 def draw_panel(axes, line, name, units, length):
-    times = some_times(len(line["t"]))
+    times = some_times(line["t"])
     time = units.unit("time", line["t"])
     words, kind = quantities.field(name)
     unit = units.unit(kind, line[name][np.isfinite(line[name])])

@@ -166,8 +166,8 @@ namespace Viscoplastic
           out << "Steps: " << text << '\n';
           if (run.steps->unresolved > 0)
             out << "Note: " << run.steps->unresolved
-                << " steps of the smallest size have larger errors than 'Step "
-                   "control/Tolerance' allows: where the data jump, or because "
+                << " steps of the smallest size have larger errors than their "
+                   "tolerance allows: where the data jump, or because "
                    "'Smallest step' is too large.\n";
         }
       if (run.implicit_steps)

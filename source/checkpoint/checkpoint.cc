@@ -68,15 +68,15 @@ namespace Viscoplastic
 
 
 
-    /// Call act(value), a reference, for all that contact and a truncation, if
-    /// there is one, know of a node.
+    /// Call act(value), a reference, for all that contact and truncations know
+    /// of a node.
     template <typename StateType, typename TruncationType, typename Action>
     void
-    for_each_value(const ContactLayout &face,
-                   const unsigned int   node,
-                   StateType           &contact,
-                   TruncationType      *truncation,
-                   const Action        &act)
+    for_each_value(const ContactLayout                 &face,
+                   const unsigned int                   node,
+                   StateType                           &contact,
+                   const std::vector<TruncationType *> &truncations,
+                   const Action                        &act)
     {
       for (unsigned int p = face.first_point[node];
            p < face.first_point[node + 1];
@@ -89,7 +89,7 @@ namespace Viscoplastic
               act(contact.multiplier[p][i]);
             }
         }
-      if (truncation != nullptr)
+      for (TruncationType *truncation : truncations)
         for (auto *blocks : {&truncation->projector, &truncation->spring})
           for (unsigned int i = 0; i < 3; ++i)
             for (unsigned int j = 0; j < 3; ++j)
@@ -184,11 +184,11 @@ namespace Viscoplastic
 
   template <int dim>
   std::string
-  pack_fields(const StressSpace<dim> &stress_space,
-              const ContactFace<dim> *face,
-              const State<dim>       &state,
-              const FaceTruncation   *truncation,
-              const Vector<double>   &squared_estimate)
+  pack_fields(const StressSpace<dim>                    &stress_space,
+              const ContactFace<dim>                    *face,
+              const State<dim>                          &state,
+              const std::vector<const FaceTruncation *> &truncations,
+              const Vector<double>                      &squared_estimate)
   {
     const AdmissibleSpace<dim> &space  = stress_space.space;
     const auto                  fields = nodal_fields(state);
@@ -223,7 +223,7 @@ namespace Viscoplastic
             for_each_value(layout,
                            node->second,
                            state.contact,
-                           truncation,
+                           truncations,
                            [&points](const double value) {
                              points.values.push_back(value);
                            });
@@ -288,15 +288,14 @@ namespace Viscoplastic
     class ContactReader
     {
     public:
-      /// @p truncation: null if none was packed.
-      ContactReader(const PackedContact &packed,
-                    const ContactLayout &layout,
-                    ContactState        &contact,
-                    FaceTruncation      *truncation)
+      ContactReader(const PackedContact                 &packed,
+                    const ContactLayout                 &layout,
+                    ContactState                        &contact,
+                    const std::vector<FaceTruncation *> &truncations)
         : packed(packed)
         , layout(layout)
         , contact(contact)
-        , truncation(truncation)
+        , truncations(truncations)
       {}
 
       /// The next node that was packed is @p node, or none of this rank.
@@ -307,14 +306,14 @@ namespace Viscoplastic
         const unsigned int n_points = packed.n_points[next_node++];
         const std::size_t  value = next_value, point = next_point;
         next_point += n_points;
-        next_value += n_points * 5 + (truncation ? 18 : 0);
+        next_value += n_points * 5 + truncations.size() * 18;
         require(next_point <= packed.sticks.size() &&
                 next_value <= packed.values.size());
         if (!node)
           return;
         require(n_points == layout.n_node_points(*node));
         const double *from = packed.values.data() + value;
-        for_each_value(layout, *node, contact, truncation, [&from](double &to) {
+        for_each_value(layout, *node, contact, truncations, [&](double &to) {
           to = *from++;
         });
         for (unsigned int p = 0; p < n_points; ++p)
@@ -331,11 +330,11 @@ namespace Viscoplastic
       }
 
     private:
-      const PackedContact &packed;
-      const ContactLayout &layout;
-      ContactState        &contact;
-      FaceTruncation      *truncation;
-      std::size_t          next_node = 0, next_point = 0, next_value = 0;
+      const PackedContact                 &packed;
+      const ContactLayout                 &layout;
+      ContactState                        &contact;
+      const std::vector<FaceTruncation *> &truncations;
+      std::size_t next_node = 0, next_point = 0, next_value = 0;
     };
   } // namespace
 
@@ -343,12 +342,12 @@ namespace Viscoplastic
 
   template <int dim>
   bool
-  unpack_fields(const PackedFields     &packed,
-                const StressSpace<dim> &stress_space,
-                const ContactFace<dim> *face,
-                State<dim>             &state,
-                FaceTruncation         *truncation,
-                Vector<double>         &squared_estimate)
+  unpack_fields(const PackedFields                  &packed,
+                const StressSpace<dim>              &stress_space,
+                const ContactFace<dim>              *face,
+                State<dim>                          &state,
+                const std::vector<FaceTruncation *> &truncations,
+                Vector<double>                      &squared_estimate)
   {
     AssertDimension(packed.meshes.size(), packed.fields.size());
     const AdmissibleSpace<dim> &space = stress_space.space;
@@ -375,7 +374,7 @@ namespace Viscoplastic
     const ContactLayout  no_face;
     const ContactLayout &layout = face != nullptr ? face->layout() : no_face;
     state.contact = ContactState(std::vector<double>(layout.points.size()));
-    if (truncation != nullptr)
+    for (FaceTruncation *truncation : truncations)
       {
         truncation->projector.resize(layout.n_nodes());
         truncation->spring.resize(layout.n_nodes());
@@ -395,7 +394,7 @@ namespace Viscoplastic
                 points.vertices.size() == (face ? ids.size() : 0) &&
                 samples.size() == sampled.size() * n_z * ids.size() &&
                 estimate.size() == (packed.has_estimate ? ids.size() : 0));
-        ContactReader of_nodes(points, layout, state.contact, truncation);
+        ContactReader of_nodes(points, layout, state.contact, truncations);
         std::size_t   next = 0;
         for (std::size_t i = 0; i < ids.size(); ++i)
           {

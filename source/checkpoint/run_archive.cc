@@ -25,6 +25,12 @@ namespace Viscoplastic
       return "fields_" + Utilities::int_to_string(rank, 5) + ".bin";
     }
 
+    std::string
+    tangents_file(const unsigned int rank)
+    {
+      return "tangents_" + Utilities::int_to_string(rank, 5) + ".bin";
+    }
+
 
 
     /// The entries and, of tables, what is in their files.
@@ -66,21 +72,45 @@ namespace Viscoplastic
 
 
 
-    /// Exchange the state of the preconditioner but for its truncation, which
-    /// has values at nodes.
-    template <typename Archive>
-    void
-    exchange_preconditioner(Archive                            &archive,
-                            std::optional<PreconditionerState> &preconditioner)
+    /// An optional value that is there after reading if it was at writing.
+    template <typename Archive, typename T>
+    bool
+    exchange_presence(Archive &archive, std::optional<T> &value)
     {
-      bool     has_state = preconditioner.has_value();
-      archive &has_state;
-      if (!has_state)
-        return;
-      if (!preconditioner)
-        preconditioner.emplace();
-      archive & preconditioner->best_rate & preconditioner->lost_iterations &
-        preconditioner->is_fresh;
+      bool     is_there = value.has_value();
+      archive &is_there;
+      if (is_there && !value)
+        value.emplace();
+      return is_there;
+    }
+
+
+
+    /// Exchange what the time stepper keeps but for truncations and fields,
+    /// which have values at nodes and samples.
+    template <int dim, typename Archive>
+    void
+    exchange_memory(Archive &archive, StepperMemory<dim> &memory)
+    {
+      for (std::optional<PreconditionerState> &kept : memory.preconditioners)
+        if (exchange_presence(archive, kept))
+          archive & kept->best_rate & kept->lost_iterations & kept->is_fresh;
+      if (exchange_presence(archive, memory.linearized))
+        archive &memory.linearized->t &memory.linearized->k;
+    }
+
+
+
+    /// The truncations that preconditioners were built for.
+    template <typename MemoryType>
+    auto
+    truncations(MemoryType &memory)
+    {
+      std::vector<decltype(&memory.preconditioners[0]->built_for)> result;
+      for (auto &kept : memory.preconditioners)
+        if (kept)
+          result.push_back(&kept->built_for);
+      return result;
     }
 
 
@@ -257,13 +287,18 @@ namespace Viscoplastic
     manifest.parameters = values_with_tables(run.scene.parameters);
 
     packed.files[mesh_file(rank)] = pack_mesh(triangulation);
-    auto preconditioner = time_stepper.method().preconditioner_state();
+    StepperMemory<dim> memory     = time_stepper.memory();
     packed.files[fields_file(rank)] =
       pack_fields(discretization.stress_space,
                   discretization.face.get(),
                   state,
-                  preconditioner ? &preconditioner->built_for : nullptr,
+                  truncations(std::as_const(memory)),
                   indicators);
+    const bool is_of_state =
+      memory.linearized && memory.linearized->u.size() > 0;
+    if (is_of_state)
+      packed.files[tangents_file(rank)] = pack_fields<dim>(
+        discretization.stress_space, nullptr, *memory.linearized, {}, {});
     if (rank == 0)
       {
         const CoarseMesh coarse_mesh = describe_coarse_mesh(triangulation);
@@ -275,7 +310,8 @@ namespace Viscoplastic
         archive &output_times;
         archive &run.recorder.elapsed_in_all();
         exchange_run(archive, run);
-        exchange_preconditioner(archive, preconditioner);
+        exchange_memory(archive, memory);
+        archive &is_of_state;
         packed.files[run_file] = archive.bytes();
       }
     return packed;
@@ -315,7 +351,8 @@ namespace Viscoplastic
                            "from the beginning or not at all."));
     archive &has_estimate &output_times &earlier_seconds;
     exchange_run(archive, run);
-    exchange_preconditioner(archive, preconditioner);
+    exchange_memory(archive, memory);
+    archive &has_tangents_of_state;
     has_bytes_to_spare = !archive.is_at_end();
     check_schedule(run, path);
     for (unsigned int r = 0; r < checkpoint.n_ranks; ++r)
@@ -326,7 +363,7 @@ namespace Viscoplastic
 
 
   template <int dim>
-  std::optional<PreconditionerState>
+  StepperMemory<dim>
   RunArchive<dim>::read_fields(const Discretization<dim> &discretization)
   {
     const MPI_Comm communicator =
@@ -341,13 +378,35 @@ namespace Viscoplastic
                           ErrorEstimator<dim>::has_sample_fields(run.scene)};
       for (unsigned int r = begin; r < end; ++r)
         packed.fields.push_back(store.read(checkpoint, fields_file(r)));
-      const bool complete =
+      bool complete =
         unpack_fields(packed,
                       discretization.stress_space,
                       discretization.face.get(),
                       run.accepted.state,
-                      preconditioner ? &preconditioner->built_for : nullptr,
+                      truncations(memory),
                       run.accepted.space_estimate.squared_indicators);
+      if (complete && has_tangents_of_state)
+        {
+          packed.fields.clear();
+          for (unsigned int r = begin; r < end; ++r)
+            packed.fields.push_back(store.read(checkpoint, tangents_file(r)));
+          packed.has_nodal_field  = {{true, false, false, false}};
+          packed.has_sample_field = {{true,
+                                      false,
+                                      true,
+                                      false,
+                                      packed.has_sample_field[4],
+                                      false,
+                                      false}};
+          packed.has_estimate     = false;
+          Vector<double> no_estimate;
+          complete = unpack_fields<dim>(packed,
+                                        discretization.stress_space,
+                                        nullptr,
+                                        *memory.linearized,
+                                        {},
+                                        no_estimate);
+        }
       return Utilities::MPI::min(complete ? 1 : 0, communicator) == 1;
     };
     // On as many ranks as before, each finds all in its own file.
@@ -356,7 +415,9 @@ namespace Viscoplastic
                   !has_bytes_to_spare,
                 ExcMessage("The checkpoint '" + store.path(checkpoint.n) +
                            "' does not fit the scene."));
-    return preconditioner;
+    if (changes.of_data) // of other tangents
+      memory.linearized.reset();
+    return memory;
   }
 
 

@@ -80,7 +80,8 @@ namespace Viscoplastic
     // after this if it does not come to its end.
     const double old_max_nu = max_nu;
     bool         is_same    = max_nu > -1.;
-    forget();
+    max_nu                  = -1.;
+    step_size               = 0.;
     tangents.resize(stress_space.n_cells() * n);
     compliances.resize(tangents.size());
     double                largest = 1., largest_nu = -1.;

@@ -128,14 +128,23 @@ namespace Viscoplastic
     const auto now = discretization.laws.at(state.t, state.history);
     // What rates have changed since the last tangents is in the remainder.
     bool is_new = false;
-    if (k != linearized_step ||
+    if (!linearized || k != linearized->k ||
         (!tangent->is_constant &&
-         change(stress_space, linearized_rate, rate.rate) > largest_change))
+         change(stress_space, linearized->rate_slope, rate.rate) >
+           largest_change))
       {
-        linearized_step = 0.; // until there are tangents
-        is_new          = tangent->linearize(state.u, state.z, now, k);
-        linearized_step = k;
-        linearized_rate = rate.rate;
+        linearized.reset(); // until there are tangents
+        is_new = tangent->linearize(state.u, state.z, now, k);
+        linearized.emplace();
+        linearized->t = state.t;
+        linearized->k = k;
+        if (!tangent->is_constant)
+          {
+            linearized->u          = state.u;
+            linearized->z          = state.z;
+            linearized->history    = state.history;
+            linearized->rate_slope = rate.rate;
+          }
       }
     const DualSolution<dim> dual =
       dual_problem.solve(solver_of_tangents(*tangent, is_new),
@@ -181,6 +190,22 @@ namespace Viscoplastic
           sides *= linearization.share;
       }
     return products;
+  }
+
+
+
+  template <int dim>
+  void
+  QuantityEstimator<dim>::restore(const State<dim> &accepted,
+                                  const State<dim> &state)
+  {
+    const State<dim> &at = tangent->is_constant ? accepted : state;
+    tangent->linearize(at.u,
+                       at.z,
+                       discretization.laws.at(at.t, at.history),
+                       state.k);
+    linearized = state;
+    solver_of_tangents(*tangent, true);
   }
 
 

@@ -262,7 +262,6 @@ namespace Viscoplastic
   {
     TimerOutput::Scope phase(timer, "checkpoint");
     output->finish(); // it names the outputs
-    time_stepper.forget_tangents();
     const PackedRun packed = pack_run(run,
                                       triangulation,
                                       *discretization,

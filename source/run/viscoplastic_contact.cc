@@ -448,9 +448,8 @@ namespace Viscoplastic
     const bool             is_solution = accepted.is_solution;
     scene.enter_stage(scene.stage_of_step_to(state.t));
     set_up(); // which knows of no solution
-    const Discretization<dim> &d              = *discretization;
-    const auto                 preconditioner = archive.read_fields(d);
-    time_stepper->method().restore(accepted, preconditioner);
+    const Discretization<dim> &d = *discretization;
+    time_stepper->restore(accepted, archive.read_fields(d));
     // Of these data: with others nothing may stay as it is.
     accepted.is_solution = is_solution && !archive.changes.of_data;
     accepted.forces      = evaluate_forces(d.stress_space,

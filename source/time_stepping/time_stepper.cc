@@ -455,6 +455,41 @@ namespace Viscoplastic
 
 
   template <int dim>
+  StepperMemory<dim>
+  TimeStepper<dim>::memory() const
+  {
+    StepperMemory<dim> result;
+    result.preconditioners[0] = step_method->preconditioner_state();
+    if (!quantity_estimator)
+      return result;
+    if (elastic_solver)
+      result.preconditioners[1] = elastic_solver->bulk().preconditioner_state();
+    if (tangent_solver)
+      result.preconditioners[2] = tangent_solver->bulk().preconditioner_state();
+    result.linearized = quantity_estimator->linearized_at();
+    return result;
+  }
+
+
+
+  template <int dim>
+  void
+  TimeStepper<dim>::restore(const EvaluatedState<dim> &accepted,
+                            const StepperMemory<dim>  &memory)
+  {
+    const auto &[of_steps, elastic, of_tangents] = memory.preconditioners;
+    step_method->restore(accepted, of_steps);
+    if (elastic)
+      solver_of_elasticity().bulk().restore(elastic);
+    if (!memory.linearized)
+      return;
+    quantity_estimator->restore(accepted.state, *memory.linearized);
+    tangent_solver->bulk().restore(of_tangents);
+  }
+
+
+
+  template <int dim>
   StepSolver<dim> &
   TimeStepper<dim>::solver_of_elasticity()
   {

@@ -39,15 +39,15 @@ namespace Viscoplastic
 
   /// What is attached to the cells of this rank and to their vertices:
   /// displacements, fields at samples, the contact points of @p face (null
-  /// without), a truncation of it (null if there is none), and
-  /// @p squared_estimate of active cells (empty without an estimator).
+  /// without), truncations of it, and @p squared_estimate of active cells
+  /// (empty without an estimator).
   template <int dim>
   std::string
-  pack_fields(const StressSpace<dim> &stress_space,
-              const ContactFace<dim> *face,
-              const State<dim>       &state,
-              const FaceTruncation   *truncation,
-              const Vector<double>   &squared_estimate);
+  pack_fields(const StressSpace<dim>                    &stress_space,
+              const ContactFace<dim>                    *face,
+              const State<dim>                          &state,
+              const std::vector<const FaceTruncation *> &truncations,
+              const Vector<double>                      &squared_estimate);
 
   /// The packed mesh and fields (pack_mesh(), pack_fields()) of some or all
   /// ranks, and which optional fields they contain.
@@ -62,17 +62,18 @@ namespace Viscoplastic
   };
 
   /// The inverse, on the same mesh. Sets the fields at nodes, contact and
-  /// those at samples of @p state. Returns whether that was all that this
-  /// rank needs. Throws ExcMessage for bytes that make no sense. Not collective
-  /// but for the exchange of ghost values at its end.
+  /// those at samples of @p state, and as many truncations as were packed.
+  /// Returns whether that was all that this rank needs. Throws ExcMessage for
+  /// bytes that make no sense. Not collective but for the exchange of ghost
+  /// values at its end.
   template <int dim>
   bool
-  unpack_fields(const PackedFields     &packed,
-                const StressSpace<dim> &stress_space,
-                const ContactFace<dim> *face,
-                State<dim>             &state,
-                FaceTruncation         *truncation,
-                Vector<double>         &squared_estimate);
+  unpack_fields(const PackedFields                  &packed,
+                const StressSpace<dim>              &stress_space,
+                const ContactFace<dim>              *face,
+                State<dim>                          &state,
+                const std::vector<FaceTruncation *> &truncations,
+                Vector<double>                      &squared_estimate);
 
   /// The coarse mesh in a form that can be compared: topology with ids, and
   /// places of the vertices.

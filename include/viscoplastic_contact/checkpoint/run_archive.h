@@ -87,9 +87,9 @@ namespace Viscoplastic
                RunState<dim>                             &run,
                parallel::distributed::Triangulation<dim> &triangulation);
 
-    /// Read the fields of the accepted state. Returns what an iterative solver
-    /// has kept, if the run had one.
-    std::optional<PreconditionerState>
+    /// Read the fields of the accepted state. Returns what the time stepper has
+    /// kept.
+    StepperMemory<dim>
     read_fields(const Discretization<dim> &discretization);
 
     /// Parameters that the user has changed since the checkpoint was written.
@@ -102,10 +102,11 @@ namespace Viscoplastic
     const CheckpointManifest &checkpoint;
     RunState<dim>            &run;
 
-    std::vector<std::string>           meshes; // by rank of the checkpoint
-    std::array<bool, 4>                has_nodal_field;
-    bool                               has_estimate       = false;
-    bool                               has_bytes_to_spare = false;
-    std::optional<PreconditionerState> preconditioner;
+    std::vector<std::string> meshes; // by rank of the checkpoint
+    std::array<bool, 4>      has_nodal_field;
+    bool                     has_estimate       = false;
+    bool                     has_bytes_to_spare = false;
+    StepperMemory<dim>       memory;
+    bool                     has_tangents_of_state = false;
   };
 } // namespace Viscoplastic

@@ -34,14 +34,6 @@ namespace Viscoplastic
               const typename FlowLaws<dim>::AtTime &now,
               const double                          k);
 
-    /// Let the next matrix be another one, whatever it is.
-    void
-    forget()
-    {
-      max_nu    = -1.;
-      step_size = 0.;
-    }
-
     const DistributedMatrix &
     matrix() const
     {

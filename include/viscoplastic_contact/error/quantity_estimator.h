@@ -111,14 +111,19 @@ namespace Viscoplastic
            const EvaluatedState<dim> &accepted,
            EvaluatedState<dim>       &end) const;
 
-    /// Take new tangents in the next step, as a run that begins here does.
-    void
-    forget() const
+    /// The state (u, z, history; G in the place of rate_slope) and the step
+    /// size k that the tangents of creep are of; k alone if they depend on
+    /// nothing else, nothing before there are any.
+    const std::optional<State<dim>> &
+    linearized_at() const
     {
-      linearized_step = 0.;
-      if (tangent)
-        tangent->forget();
+      return linearized;
     }
+
+    /// Go on with the tangents of @p state, as linearized_at() had it in a run
+    /// that has come to @p accepted. Collective. Throws ExcMessage.
+    void
+    restore(const State<dim> &accepted, const State<dim> &state);
 
   private:
     /// Coulomb's law of the pressure of the step to @p state, whose slip rates
@@ -166,10 +171,8 @@ namespace Viscoplastic
     const TangentSolver        solver_of_tangents;
     const DualProblem<dim>     dual_problem;
     const BoundaryDefects<dim> boundary_defects;
-    /// Of creep, with the step and rates that they are of; null if nothing
-    /// creeps.
+    /// Of creep, null if nothing creeps, and what it is of.
     std::unique_ptr<TangentMatrix<dim>> tangent;
-    mutable double                      linearized_step = 0.;
-    mutable IrreversibleStress          linearized_rate;
+    mutable std::optional<State<dim>>   linearized;
   };
 } // namespace Viscoplastic

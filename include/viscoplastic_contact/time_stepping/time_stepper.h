@@ -37,6 +37,20 @@ namespace Viscoplastic
 
 
 
+  /// What a TimeStepper has kept of steps before the last one, so that a run
+  /// that goes on from a checkpoint goes on bit by bit.
+  template <int dim>
+  struct StepperMemory
+  {
+    /// Of the solvers of steps, of a(.,.) and of the tangents of a quantity;
+    /// nothing where all solves of one are alike, or where there is none.
+    std::array<std::optional<PreconditionerState>, 3> preconditioners;
+    /// See QuantityEstimator::linearized_at().
+    std::optional<State<dim>> linearized;
+  };
+
+
+
   /// Makes the steps of a run on one mesh: proposes a step, tries it, judges
   /// it, and tries a shorter one until one will do. A step that is tried
   /// changes neither the state that it starts from nor anything here; what it
@@ -84,14 +98,15 @@ namespace Viscoplastic
     void
     estimate_quantity(EvaluatedState<dim> &initial);
 
-    /// Let the estimate of a quantity keep no tangents that a run which begins
-    /// with this state does not have.
+    /// What is to be kept in checkpoints beside the accepted state. Collective.
+    StepperMemory<dim>
+    memory() const;
+
+    /// Go on from an accepted state on this mesh as the stepper did that had
+    /// this memory there. Collective. Throws ExcMessage.
     void
-    forget_tangents() const
-    {
-      if (quantity_estimator)
-        quantity_estimator->forget();
-    }
+    restore(const EvaluatedState<dim> &accepted,
+            const StepperMemory<dim>  &memory);
 
     /// Whether steps of this scene ask for G at the state that they start from.
     bool

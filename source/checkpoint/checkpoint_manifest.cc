@@ -17,7 +17,7 @@ namespace Viscoplastic
 
   namespace
   {
-    const std::string first_line = first_words_of_manifests + "9";
+    const std::string first_line = first_words_of_manifests + "10";
   }
 
 

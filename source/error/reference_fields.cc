@@ -14,24 +14,29 @@ namespace Viscoplastic
   {
     const FEValuesExtractors::Vector displacement(0);
 
+    /// The part of the way to the center of its cell that a point of a face is
+    /// taken inside, to be found in a cell of its body.
+    constexpr double inset = 1e-3;
+
     /// Begins a file of samples, and says of which dimension and version.
     template <int dim>
-    constexpr double magic_number = 7.27e9 + dim;
+    constexpr double magic_number = 7.28e9 + dim;
 
 
 
-    /// Bring each sample to the owned cell it lies in:
-    /// visit(cell, samples in it, their points on the unit cell). Returns
+    /// Bring each sample to the owned cell in which its @p place lies:
+    /// visit(cell, samples in it, their places on the unit cell). Returns
     /// after all ranks have.
     template <int dim, typename Sample, typename Visitor>
     void
     visit_cells_of(const std::vector<Sample> &samples,
-                   const DoFHandler<dim>     &dof_handler,
-                   const Visitor             &visit)
+                   Point<dim> Sample::*const place,
+                   const DoFHandler<dim>    &dof_handler,
+                   const Visitor            &visit)
     {
       std::vector<Point<dim>> points;
       for (const Sample &sample : samples)
-        points.push_back(sample.x);
+        points.push_back(sample.*place);
       Utilities::MPI::RemotePointEvaluation<dim> remote(
         1e-6, /* enforce_unique_mapping = */ true);
       const MappingQ1<dim> mapping;
@@ -128,6 +133,7 @@ namespace Viscoplastic
       std::vector<Tensor<2, dim>> gradients;
       visit_cells_of(
         reference.cells,
+        &FieldSamples<dim>::CellPoint::x,
         dof_handler,
         [&](const auto &cell, const auto &samples, const auto &points) {
           const unsigned int i         = owned_index[cell->active_cell_index()];
@@ -183,25 +189,30 @@ namespace Viscoplastic
               SolutionNorms              &norm)
     {
       const MappingQ1<dim> mapping;
-      visit_cells_of(
-        reference.faces,
-        space.dof_handler,
-        [&](const auto &cell, const auto &samples, const auto &points) {
-          FEValues<dim> here(mapping,
-                             space.dof_handler.get_fe(),
-                             Quadrature<dim>(points),
-                             update_values);
-          here.reinit(cell);
-          std::vector<Tensor<1, dim>> multiplier(points.size());
-          here[displacement].get_function_values(density, multiplier);
-          for (unsigned int q = 0; q < points.size(); ++q)
-            {
-              const auto &[x, weight, lambda] = samples[q];
-              error.multiplier +=
-                (lambda - multiplier[q]).norm_square() * weight;
-              norm.multiplier += lambda.norm_square() * weight;
-            }
-        });
+      visit_cells_of(reference.faces,
+                     &FieldSamples<dim>::FacePoint::inside,
+                     space.dof_handler,
+                     [&](const auto &cell, const auto &samples, auto points) {
+                       for (unsigned int q = 0; q < points.size(); ++q)
+                         points[q] = GeometryInfo<dim>::project_to_unit_cell(
+                           mapping.transform_real_to_unit_cell(cell,
+                                                               samples[q].x));
+                       FEValues<dim> here(mapping,
+                                          space.dof_handler.get_fe(),
+                                          Quadrature<dim>(points),
+                                          update_values);
+                       here.reinit(cell);
+                       std::vector<Tensor<1, dim>> multiplier(points.size());
+                       here[displacement].get_function_values(density,
+                                                              multiplier);
+                       for (unsigned int q = 0; q < points.size(); ++q)
+                         {
+                           const auto &[x, inside, weight, lambda] = samples[q];
+                           error.multiplier +=
+                             (lambda - multiplier[q]).norm_square() * weight;
+                           norm.multiplier += lambda.norm_square() * weight;
+                         }
+                     });
     }
 
 
@@ -292,9 +303,12 @@ namespace Viscoplastic
             face_values[displacement].get_function_values(*multiplier_density,
                                                           lambda);
             for (const unsigned int q : face_values.quadrature_point_indices())
-              result.faces.push_back({face_values.quadrature_point(q),
-                                      face_values.JxW(q),
-                                      lambda[q]});
+              result.faces.push_back(
+                {face_values.quadrature_point(q),
+                 face_values.quadrature_point(q) +
+                   inset * (cell->center() - face_values.quadrature_point(q)),
+                 face_values.JxW(q),
+                 lambda[q]});
           }
       }
     return result;
@@ -337,11 +351,12 @@ namespace Viscoplastic
     std::string       complaint;
     if (Utilities::MPI::this_mpi_process(communicator) == 0)
       {
-        bool is_good = false;
+        bool is_good = false, is_there = false;
         try
           {
             if (const auto bytes = read_file_if_any(file))
               {
+                is_there = true;
                 BinaryReader archive(*bytes);
                 double       magic = 0.;
                 archive     &magic;
@@ -355,10 +370,12 @@ namespace Viscoplastic
             is_good = false; // said below
           }
         if (!is_good)
-          complaint = "'" + file + "' holds no reference fields in " +
-                      std::to_string(dim) +
-                      " dimensions; they are written by a run with 'Output/"
-                      "Reference fields' = true.";
+          complaint = "'" + file + "' " +
+                      (is_there ? "holds no reference fields in " +
+                                    std::to_string(dim) + " dimensions" :
+                                  "does not exist") +
+                      "; reference fields are written at the end of each phase "
+                      "by a run with 'Output/Reference fields' = true.";
       }
     agree(complaint, communicator);
     result.t = Utilities::MPI::broadcast(communicator, result.t);

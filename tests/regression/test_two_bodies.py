@@ -790,6 +790,27 @@ PARABOLAS = (
 )
 
 
+class Reference(TestCase):
+    def test_multipliers_are_compared_on_their_own_body(self):
+        """Against its own fields a run has no error; the other body has the
+        multipliers with the other sign."""
+        scene = {
+            "Boundary 3/Friction law": "coulomb",
+            "Boundary 3/Friction coefficient": 0.3,
+            "Boundary 20/Role": "free",
+            "Boundary 23/Role": "displacement",
+            "Boundary 23/Displacement": "0.003*t; -0.01*t",
+            "Boundary 23/Pressure": 0,
+            "Output/Points": "",
+        }
+        first = run("two_blocks_2d", {**scene, "Output/Reference fields": "true"})
+        again = run(
+            "two_blocks_2d",
+            {**scene, "Exact solution/Reference directory": first.directory},
+        )
+        self.assertLess(again["error_multiplier"][-1], 1e-15)
+
+
 class Known(TestCase):
     """Contact of two elastic bodies, as it is known in closed form."""
 

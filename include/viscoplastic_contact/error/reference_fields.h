@@ -36,15 +36,15 @@ namespace Viscoplastic
 
     struct FacePoint
     {
-      Point<dim>     x;
-      double         weight; // the area over the number of points
+      Point<dim>     x, inside; // the second tells which of two bodies it is of
+      double         weight;    // the area over the number of points
       Tensor<1, dim> multiplier;
 
       template <typename Archive>
       void
       serialize(Archive &archive, const unsigned int)
       {
-        archive &x &weight &multiplier;
+        archive &x &inside &weight &multiplier;
       }
     };
 

@@ -177,9 +177,16 @@ namespace Viscoplastic
               geometry, discretization->space.dof_handler.get_triangulation()) >
             estimate.energy_norm;
         if (scene.quantity)
-          run.quantity_errors.update(estimate.quantity,
-                                     std::abs(estimate.quantity.value),
-                                     t);
+          {
+            run.quantity_errors.update(estimate.quantity,
+                                       std::abs(estimate.quantity.value),
+                                       t);
+            if (budget == nullptr)
+              {
+                run.dual_times.push_back(t);
+                run.dual_norms.push_back(estimate.quantity.dual_norm);
+              }
+          }
       }
     if (const double k_r = step.stiffness(); k_r > run.stiffness.value)
       {
@@ -333,6 +340,7 @@ namespace Viscoplastic
     RunBill bill;
     bill.seconds       = seconds();
     bill.total         = elapsed();
+    bill.earlier       = earlier_seconds;
     bill.has_viscosity = scene.has_viscosity();
     bill.solves        = solve_seconds;
     if (scene.has_friction())

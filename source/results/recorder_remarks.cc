@@ -169,7 +169,11 @@ namespace Viscoplastic
          << (errors.time + errors.friction) / size << " by the time steps and "
          << errors.initial / size << " by the initial data; ";
     if (errors.time + errors.friction > 0.5 * errors.total())
-      text << "steps of the smallest size are too long, so that the data jump "
+      text << (scene.quantity ?
+                 "the quantity feels what steps have left before it depends on "
+                 "them: set 'Step control/Largest step' to less; or " :
+                 "")
+           << "steps of the smallest size are too long, so that the data jump "
               "or 'Step control/Smallest step' is too large.";
     else if (errors.history_adds && errors.history > 0.5 * errors.total())
       text << "'Material/Stress history' = cell means lets no stress flow that "

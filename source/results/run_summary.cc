@@ -362,7 +362,11 @@ namespace Viscoplastic
       print_line(name, time, "");
     const double others = rest;
     print_line("rest", others, "mesh, initial state, progress");
-    print_line("whole run", total, "");
+    std::ostringstream before;
+    if (earlier > 0.)
+      before << "since the restart, " << std::setprecision(3) << earlier
+             << " s before it";
+    print_line("whole run", total, before.str());
   }
 
 

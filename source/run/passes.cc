@@ -49,8 +49,10 @@ namespace Viscoplastic
         {
           const Parameters         pilot({}, assignments(parameters));
           ViscoplasticContact<dim> problem(pilot, silence, {});
-          expectation.size =
-            problem.run_without_files().controlled_errors().size;
+          RunSummary<dim>          summary = problem.run_without_files();
+          expectation.size                 = summary.controlled_errors().size;
+          expectation.dual_times           = std::move(summary.dual_times);
+          expectation.dual_norms           = std::move(summary.dual_norms);
         }
       catch (const std::exception &exception)
         {

@@ -151,6 +151,7 @@ namespace Viscoplastic
     make_first_mesh<dim>(scene, triangulation, control, nullptr);
     refine_like(earlier.triangulation, triangulation);
     budget->expected_size = earlier.budget->expected_size;
+    control.expect_dual_norms_of(earlier.control);
     recorder.count_pilot_run(earlier.recorder);
   }
 
@@ -168,6 +169,8 @@ namespace Viscoplastic
             TimerOutput::Scope phase(timer, "pilot run");
             expectation = pilot_run();
             budget->expect_size(expectation.size);
+            control.expect_dual_norms(expectation.dual_times,
+                                      expectation.dual_norms);
           }
         control.expect_size(budget->expected_size);
       }

@@ -146,8 +146,8 @@ namespace Viscoplastic
           for (std::size_t p = 0; p < scene.output_points.size(); ++p)
             if (here.distances[p] == 0. && opposite.distances[p] == 0.)
               warnings.push_back(
-                "'Output/Points': point " + std::to_string(p) +
-                " lies in both bodies, on boundary " + std::to_string(id) +
+                "'Output/Points': " + scene.names.of("point", p) +
+                " lies in both bodies, on " + scene.names.of("boundary", id) +
                 " and on what is against it; it is taken of the body whose "
                 "cell there has the center with the least coordinates. Move it "
                 "a little into the one that is meant.");

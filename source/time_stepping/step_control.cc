@@ -234,6 +234,18 @@ namespace Viscoplastic
 
 
   double
+  StepControl::later_dual_norm(const double t) const
+  {
+    double largest = 0.;
+    for (std::size_t i = 0; i < dual_times.size(); ++i)
+      if (dual_times[i] >= t)
+        largest = std::max(largest, dual_norms[i]);
+    return largest;
+  }
+
+
+
+  double
   StepControl::smallest(const double t) const
   {
     const auto &phase = schedule.phase_at(t);

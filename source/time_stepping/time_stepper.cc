@@ -412,7 +412,10 @@ namespace Viscoplastic
       {
         const QuantityEstimate &quantity = estimate.quantity,
                                &before   = accepted.errors.quantity;
-        errors.indicator *= quantity.dual_norm;
+        errors.indicator *=
+          scene.quantity->is_sum() ?
+            quantity.dual_norm :
+            std::max(quantity.dual_norm, control.later_dual_norm(state.t));
         if (moves)
           errors.of_events = quantity.friction_indicator;
         if (scene.quantity->is_sum() && discretization.face)

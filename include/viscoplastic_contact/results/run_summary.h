@@ -57,6 +57,9 @@ namespace Viscoplastic
     /// The errors of the quantity of interest of this name; empty without one.
     std::string  quantity;
     ErrorSummary quantity_errors;
+    /// With a quantity and no tolerance: the norms of the dual solution after
+    /// the steps, and their times.
+    std::vector<double> dual_times, dual_norms;
     /// The tolerance of a run that keeps one, and where prescribed
     /// displacements jump, so that no error bar is true; absent: nowhere.
     std::optional<double>     tolerance;
@@ -142,8 +145,8 @@ namespace Viscoplastic
     /// Seconds by phase, as run_phases names them; `set-up' is that of the
     /// first mesh, later ones are part of the adaptation.
     std::map<std::string, double> seconds;
-    /// Seconds of the whole run.
-    double total         = 0.;
+    /// Seconds of the whole run, and of its parts before a restart.
+    double total = 0., earlier = 0.;
     bool   has_viscosity = false;
     /// Seconds of the solves of all steps, and what they would have taken
     /// without friction; the latter is absent where nothing can slip.

@@ -30,6 +30,8 @@ namespace Viscoplastic
     /// quantity of interest. Zero, and @p failure says why, if nobody knows.
     double      size = 0.;
     std::string failure;
+    /// The norms of the dual solution of a quantity, and their times.
+    std::vector<double> dual_times, dual_norms;
   };
 
   /// Finds that out. Collective.

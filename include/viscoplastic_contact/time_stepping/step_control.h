@@ -120,6 +120,27 @@ namespace Viscoplastic
       present.size = size;
     }
 
+    /// The norms of the dual solution of a coarse run at times: errors that a
+    /// quantity does not feel yet, as a force while all points slip, it may
+    /// feel later.
+    void
+    expect_dual_norms(const std::vector<double> &times,
+                      const std::vector<double> &norms)
+    {
+      dual_times = times;
+      dual_norms = norms;
+    }
+
+    void
+    expect_dual_norms_of(const StepControl &other)
+    {
+      expect_dual_norms(other.dual_times, other.dual_norms);
+    }
+
+    /// The largest of these norms from a time on; 0 if nothing is known.
+    double
+    later_dual_norm(const double t) const;
+
     /// Whether a step may be tried more than once.
     bool
     may_reject() const
@@ -197,6 +218,7 @@ namespace Viscoplastic
       archive &present.wanted &present.last_ratio &present.size &present
         .was_rejected &present.event_before &present.unsigned_sum;
       archive &n.rejected &n.events &n.failed &n.unresolved;
+      archive &dual_times                     &dual_norms;
     }
 
     const bool is_on, subdivides;
@@ -249,6 +271,7 @@ namespace Viscoplastic
     const unsigned int           order;
     const double                 output_interval, tolerance_of_run;
     std::vector<double>          landing_times, data_kinks; // ascending
+    std::vector<double>          dual_times, dual_norms;
     bool                         has_estimate = true;
 
     /// Now, and before the last step was accepted.

@@ -75,25 +75,10 @@ namespace
       const CommandLine &command_line,
       Console           &console)
   {
-    const bool compares = parameters.error_control.two_level_comparison;
-    if (compares)
-      coarser_scene(parameters); // throws
-    if (command_line.task == CommandLine::Task::check)
-      {
-        check_scene<dim>(parameters, console);
-        return "";
-      }
-    if (!compares)
-      return run_in_passes<dim>(parameters,
-                                console,
-                                command_line.restart,
-                                nullptr);
-    console.stream() << "First with twice the mesh width and twice the time "
-                        "steps, to compare."
-                     << std::endl;
-    const RunSummary<dim> coarser =
-      run_coarser_scene<dim>(parameters, command_line);
-    return run_in_passes(parameters, console, command_line.restart, &coarser);
+    if (command_line.task != CommandLine::Task::check)
+      return run_in_passes<dim>(parameters, console, command_line.restart);
+    check_scene<dim>(parameters, console);
+    return "";
   }
 
   std::string

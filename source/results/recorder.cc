@@ -111,7 +111,7 @@ namespace Viscoplastic
     const StatisticsRow recorded = row(step, quantities, errors);
     run.at_end.clear();
     for (const StatisticsRow::Entry &entry : recorded.entries)
-      if (entry.at_end != StatisticsRow::AtEnd::absent)
+      if (entry.is_printed)
         run.at_end.push_back(entry);
     if (statistics)
       statistics->write(recorded);
@@ -310,10 +310,10 @@ namespace Viscoplastic
 
   template <int dim>
   void
-  Recorder<dim>::print(std::ostream &out, const RunSummary<dim> *coarser) const
+  Recorder<dim>::print(std::ostream &out) const
   {
     out << '\n';
-    run.print(out, scene.parameters.units, scene.names, coarser);
+    run.print(out, scene.parameters.units, scene.names);
     const double n = run.n_steps;
     out << std::setprecision(3) << "Iterations per step: ";
     if (newton_iterations > 0)

@@ -296,16 +296,9 @@ namespace Viscoplastic
 
   template <int dim>
   void
-  RunFiles<dim>::close(const RunSummary<dim>          *coarser,
-                       const std::vector<std::string> &remarks)
+  RunFiles<dim>::close(const std::vector<std::string> &remarks)
   {
     const Recorder<dim> &recorder = run.recorder;
-    if (coarser != nullptr &&
-        Utilities::MPI::this_mpi_process(communicator) == 0)
-      write_uncertainties(directory() + "uncertainty.csv",
-                          parameters.units,
-                          recorder.summary(),
-                          *coarser);
     output->record_end(recorder.summary(),
                        {recorder.seconds(),
                         recorder.bill().friction(),

@@ -329,15 +329,6 @@ class OtherResults(TestCase):
         (result.directory / "run.json").unlink()
         self.assertIn("no run.json", page_of(result).words["remarks"])
 
-    def test_uncertainties_of_two_levels(self):
-        result = run("slab", {"Time/Phases": "1: 4"})
-        (result.directory / "uncertainty.csv").write_text(
-            "quantity,value,uncertainty\nfriction_force_x,1,0.125\n"
-        )
-        rows = {row[0]: row[1:] for row in page_of(result).rows["results"]}
-        self.assertEqual(rows["friction_force_x"][3:], [0.125])
-        self.assertEqual(len(rows["stored_energy"]), 3)
-
     def test_refused(self):
         with tempfile.TemporaryDirectory() as directory:
             directory = Path(directory)

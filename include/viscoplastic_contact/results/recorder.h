@@ -111,10 +111,9 @@ namespace Viscoplastic
     std::vector<std::string>
     remarks(const State<dim> &state) const;
 
-    /// The closing words but for the remarks. @p coarser: of a run with twice
-    /// the mesh width and time steps, or null. On all ranks.
+    /// The closing words but for the remarks. On all ranks.
     void
-    print(std::ostream &out, const RunSummary<dim> *coarser) const;
+    print(std::ostream &out) const;
 
     const RunSummary<dim> &
     summary() const

@@ -112,27 +112,11 @@ namespace Viscoplastic
     /// that; zero without one.
     SolutionNorms largest_error, largest_exact;
 
-    /// @p coarser: of a run with twice the mesh width and twice the time steps,
-    /// or null. The difference is the uncertainty of each quantity, by first
-    /// order convergence. Numbers have their units if @p units are declared,
-    /// and places their names.
+    /// Numbers have their units if @p units are declared, and places their
+    /// names.
     void
-    print(std::ostream     &out,
-          const Units      &units,
-          const PlaceNames &names,
-          const RunSummary *coarser = nullptr) const;
+    print(std::ostream &out, const Units &units, const PlaceNames &names) const;
   };
-
-
-
-  /// A table `quantity,value,uncertainty' of the end of a run. Throws
-  /// ExcMessage if it cannot be written.
-  template <int dim>
-  void
-  write_uncertainties(const std::string     &file,
-                      const Units           &units,
-                      const RunSummary<dim> &summary,
-                      const RunSummary<dim> &coarser);
 
 
 

@@ -78,11 +78,10 @@ namespace Viscoplastic
     void
     finish();
 
-    /// Add what is known at the end, the difference from @p coarser (may be
-    /// null), costs and remarks to the record of the run.
+    /// Add what is known at the end, costs and remarks to the record of the
+    /// run.
     void
-    close(const RunSummary<dim>          *coarser,
-          const std::vector<std::string> &remarks);
+    close(const std::vector<std::string> &remarks);
 
   private:
     /// Lock the directories of results and checkpoints, as far as they exist

@@ -60,13 +60,10 @@ namespace Viscoplastic
                         const PilotRun   &pilot_run);
 
     /// Simulate, from the start or from a checkpoint; a pass that needs another
-    /// one ends without closing words. These give
-    /// each quantity with its difference from that of @p coarser, a run with
-    /// twice the mesh width and time steps, unless that is null. Returns a
-    /// sentence if a signal has ended the run early, after a checkpoint.
+    /// one ends without closing words. Returns a sentence if a signal has ended
+    /// the run early, after a checkpoint.
     std::string
-    run(const CommandLine::Restart restart = CommandLine::Restart::no,
-        const RunSummary<dim>     *coarser = nullptr);
+    run(const CommandLine::Restart restart = CommandLine::Restart::no);
 
     /// Run without files and without the words at the beginning, in one pass;
     /// returns what is known at the end.
@@ -145,7 +142,7 @@ namespace Viscoplastic
     resume(const CheckpointManifest &checkpoint);
     /// The closing words.
     void
-    close(const RunSummary<dim> *coarser);
+    close();
 
     // What is simulated.
     const MPI_Comm                            communicator;

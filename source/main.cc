@@ -2,11 +2,10 @@
 #include <deal.II/base/mpi.h>
 
 #include <viscoplastic_contact/base/expression.h>
-#include <viscoplastic_contact/base/heartbeat.h>
 #include <viscoplastic_contact/base/messages.h>
 #include <viscoplastic_contact/base/mpi_singleton.h>
+#include <viscoplastic_contact/base/progress.h>
 #include <viscoplastic_contact/base/signals.h>
-#include <viscoplastic_contact/base/unexpected_end.h>
 #include <viscoplastic_contact/parameters/parameter_description.h>
 #include <viscoplastic_contact/run/command_line.h>
 #include <viscoplastic_contact/run/passes.h>

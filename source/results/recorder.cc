@@ -3,7 +3,7 @@
 #include <viscoplastic_contact/discretization/initial_state.h>
 #include <viscoplastic_contact/error/kelly_estimator.h>
 #include <viscoplastic_contact/results/recorder.h>
-#include <viscoplastic_contact/results/run_phases.h>
+#include <viscoplastic_contact/results/run_summary.h>
 
 #include <iomanip>
 
@@ -273,18 +273,6 @@ namespace Viscoplastic
                        discretization->space.dof_handler.get_triangulation()
                          .n_global_active_cells())},
                     elapsed());
-  }
-
-
-
-  template <int dim>
-  std::map<std::string, double>
-  Recorder<dim>::seconds() const
-  {
-    auto result = timer.get_summary_data(TimerOutput::total_wall_time);
-    if (pilot_seconds > 0.)
-      result["pilot run"] += pilot_seconds;
-    return result;
   }
 
 

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <viscoplastic_contact/base/messages.h>
 #include <viscoplastic_contact/base/types.h>
-#include <viscoplastic_contact/results/run_phases.h>
 #include <viscoplastic_contact/results/run_summary.h>
 
 #include <iomanip>
@@ -264,17 +263,6 @@ namespace Viscoplastic
     print_largest(out, units, *this);
     print_steps(out, *this);
     print_errors(out, units, names, *this);
-  }
-
-
-
-  double
-  RunBill::friction() const
-  {
-    const auto contact = seconds.find("contact");
-    if (!plain_solves || !(solves > 0.) || contact == seconds.end())
-      return 0.;
-    return contact->second * (1. - *plain_solves / solves);
   }
 
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <viscoplastic_contact/base/instantiate_member.h>
+#include <viscoplastic_contact/base/types.h>
 #include <viscoplastic_contact/results/recorder.h>
-#include <viscoplastic_contact/results/run_phases.h>
+#include <viscoplastic_contact/results/run_summary.h>
 #include <viscoplastic_contact/results/unit_labels.h>
 
 // What a run records of each step; doc/results.md tells what it means.

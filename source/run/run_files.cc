@@ -164,26 +164,6 @@ namespace Viscoplastic
 
   template <int dim>
   void
-  RunFiles<dim>::set_mesh(const Discretization<dim> &discretization)
-  {
-    this->discretization = &discretization;
-    lines.set_mesh(discretization);
-  }
-
-
-
-  template <int dim>
-  void
-  RunFiles<dim>::begin_steps()
-  {
-    schedule.begin_steps(run.recorder.elapsed());
-    signals.emplace();
-  }
-
-
-
-  template <int dim>
-  void
   RunFiles<dim>::write(const TimeStep &step)
   {
     TimerOutput::Scope         phase(timer, "output");
@@ -279,17 +259,6 @@ namespace Viscoplastic
     for (const std::string &remark : checkpoints.write(
            packed.manifest, packed.files, parameters.checkpoint.keep))
       console.remark(remark);
-  }
-
-
-
-  template <int dim>
-  void
-  RunFiles<dim>::finish()
-  {
-    TimerOutput::Scope phase(timer, "output");
-    output->finish();
-    signals.reset();
   }
 
 

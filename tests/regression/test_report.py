@@ -166,7 +166,7 @@ class Runs(TestCase):
             self.assertClose(friction, float(printed), 0.05, 1e-3)
 
     def test_bill_knows_all_phases(self):
-        header = SOURCE / "include/viscoplastic_contact/results/run_phases.h"
+        header = SOURCE / "include/viscoplastic_contact/results/run_summary.h"
         text = header.read_text().split("run_phases{", 1)[1]
         names = re.findall(r'\{"([^"]+)"', text)
         self.assertEqual([name for name in bill.PHASES if name != "friction"], names)

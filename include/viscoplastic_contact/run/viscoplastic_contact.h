@@ -98,7 +98,8 @@ namespace Viscoplastic
     /// them.
     void
     set_initial_state();
-    /// Record and write it unless that has been done: at once, or, where the
+    /// Record and write the initial state unless that has been done: at once,
+    /// or, where the
     /// first step may refine the mesh and begin anew, once it has been made.
     void
     record_initial_state();
@@ -140,7 +141,7 @@ namespace Viscoplastic
     /// Go on from a checkpoint: what begin() does, and all steps up to there.
     void
     resume(const CheckpointManifest &checkpoint);
-    /// The closing words.
+    /// Print the closing words and complete the record of the run.
     void
     close();
 

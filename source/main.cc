@@ -2,11 +2,10 @@
 #include <deal.II/base/mpi.h>
 
 #include <viscoplastic_contact/base/expression.h>
-#include <viscoplastic_contact/base/heartbeat.h>
 #include <viscoplastic_contact/base/messages.h>
 #include <viscoplastic_contact/base/mpi_singleton.h>
+#include <viscoplastic_contact/base/progress.h>
 #include <viscoplastic_contact/base/signals.h>
-#include <viscoplastic_contact/base/unexpected_end.h>
 #include <viscoplastic_contact/parameters/parameter_description.h>
 #include <viscoplastic_contact/run/command_line.h>
 #include <viscoplastic_contact/run/passes.h>
@@ -75,25 +74,10 @@ namespace
       const CommandLine &command_line,
       Console           &console)
   {
-    const bool compares = parameters.error_control.two_level_comparison;
-    if (compares)
-      coarser_scene(parameters); // throws
-    if (command_line.task == CommandLine::Task::check)
-      {
-        check_scene<dim>(parameters, console);
-        return "";
-      }
-    if (!compares)
-      return run_in_passes<dim>(parameters,
-                                console,
-                                command_line.restart,
-                                nullptr);
-    console.stream() << "First with twice the mesh width and twice the time "
-                        "steps, to compare."
-                     << std::endl;
-    const RunSummary<dim> coarser =
-      run_coarser_scene<dim>(parameters, command_line);
-    return run_in_passes(parameters, console, command_line.restart, &coarser);
+    if (command_line.task != CommandLine::Task::check)
+      return run_in_passes<dim>(parameters, console, command_line.restart);
+    check_scene<dim>(parameters, console);
+    return "";
   }
 
   std::string

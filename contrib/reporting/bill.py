@@ -6,7 +6,7 @@ from plotting.units import plain_number
 
 from .tables import data
 
-# Parts of the clock of a run (run_phases.h): what they are paid for, and their colors.
+# Parts of the clock of a run (run_summary.h): what they are paid for, and their colors.
 PHASES = {
     "pilot run": ("pilot run of the tolerance", "#8c510a"),
     "set-up": ("set-up: spaces, matrix, factorization or multigrid", style.SERIES[5]),

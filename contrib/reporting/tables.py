@@ -1,14 +1,12 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Tables of a run: its results, the parts of its error, its balances."""
 
-import csv
 from html import escape
 
 import numpy as np
 
 from plotting import history
 from plotting.quantities import column
-from plotting.results import UserError
 from plotting.units import plain_number
 
 from .markup import folded_up, formula, items, table, value
@@ -47,18 +45,13 @@ def quantities(results, units):
         for name, values in statistics.items()
         if name not in main and history.finite(values).any()
     ]
-    errors = uncertainties(results)
-    text = columns(statistics, main, units, errors)
-    if errors:
-        text += (
-            "<p>± is the difference to the run with twice the mesh width and half the "
-            "steps (<code>uncertainty.csv</code>).</p>\n"
-        )
-    rest = columns(statistics, more, units, errors)
-    return text + folded_up("All other columns of statistics.csv", rest)
+    rest = columns(statistics, more, units)
+    return columns(statistics, main, units) + folded_up(
+        "All other columns of statistics.csv", rest
+    )
 
 
-def columns(statistics, names, units, errors):
+def columns(statistics, names, units):
     time = units.unit("time", statistics["t"])
     rows = []
     for name in names:
@@ -76,29 +69,12 @@ def columns(statistics, names, units, errors):
                 + " (initial equilibrium)" * (name == "slip_area" and at == 0),
             ]
         )
-        if errors:
-            known = name in errors
-            error = known and data(errors[name], value(unit, errors[name], 2))
-            rows[-1].append(error or "")
     head = ["quantity", "at the end", "largest in size", "at <i>t</i> ="]
-    return table(head + ["± at the end"] * bool(errors), rows, (1, 2, 3, 4))
+    return table(head, rows, (1, 2, 3))
 
 
 def but_rounding(number, largest):
     return 0.0 if abs(number) < 1e-12 * abs(largest) else number
-
-
-def uncertainties(results):
-    """{column: uncertainty} of a two-level comparison, where there is one."""
-    path = results.directory / "uncertainty.csv"
-    if not path.exists():
-        return {}
-    try:
-        with open(path, newline="", encoding="utf-8") as file:
-            rows = list(csv.reader(file))[1:]
-        return {row[0].split(" [")[0]: float(row[2]) for row in rows}
-    except (OSError, ValueError, IndexError) as error:
-        raise UserError(f"{path} cannot be read: {error!r}") from error
 
 
 def errors(results, about, units):

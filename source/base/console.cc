@@ -35,14 +35,6 @@ namespace Viscoplastic
 
 
 
-  double
-  Console::age() const
-  {
-    return std::chrono::duration<double>(Clock::now() - beginning).count();
-  }
-
-
-
   bool
   Console::is_silent_for(const double seconds) const
   {
@@ -51,19 +43,6 @@ namespace Viscoplastic
                                std::chrono::duration_cast<Clock::duration>(
                                  std::chrono::duration<double>(seconds)),
                                (now - beginning) / 100);
-  }
-
-
-
-  void
-  Console::remark(const std::string &sentence)
-  {
-    // Two passes may say the same.
-    if (std::find(all_remarks.begin(), all_remarks.end(), sentence) !=
-        all_remarks.end())
-      return;
-    all_remarks.push_back(sentence);
-    everywhere << sentence << std::endl;
   }
 
 

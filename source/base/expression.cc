@@ -3,7 +3,6 @@
 
 #include <viscoplastic_contact/base/expression.h>
 #include <viscoplastic_contact/base/messages.h>
-#include <viscoplastic_contact/base/spelling.h>
 #include <viscoplastic_contact/base/table_parser.h>
 #include <viscoplastic_contact/base/types.h>
 
@@ -88,12 +87,9 @@ namespace Viscoplastic
             refuse("has a single '='; comparisons are written '=='.");
         }
     }
-  } // namespace
 
 
 
-  namespace
-  {
     template <int dim>
     const ParserWithTables<dim> &
     with_tables(const std::unique_ptr<FunctionParser<dim>> &parser)
@@ -389,42 +385,6 @@ namespace Viscoplastic
           components[d].require_finite(result[d], x, t);
       }
     return result;
-  }
-
-
-
-  template <int dim>
-  bool
-  VectorExpression<dim>::depends_on_time() const
-  {
-    for (const auto &component : components)
-      if (component.depends_on_time())
-        return true;
-    return false;
-  }
-
-
-
-  template <int dim>
-  bool
-  VectorExpression<dim>::is_written_as(const VectorExpression &other) const
-  {
-    bool result = components.size() == other.components.size();
-    for (unsigned int c = 0; result && c < components.size(); ++c)
-      result = components[c].is_written_as(other.components[c]);
-    return result;
-  }
-
-
-
-  template <int dim>
-  bool
-  VectorExpression<dim>::is_zero() const
-  {
-    for (const auto &component : components)
-      if (!component.is_zero())
-        return false;
-    return true;
   }
 
 

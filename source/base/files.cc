@@ -3,9 +3,10 @@
 #include <deal.II/base/utilities.h>
 
 #include <viscoplastic_contact/base/files.h>
+#include <viscoplastic_contact/base/messages.h>
 #include <viscoplastic_contact/base/source_directory.h>
-#include <viscoplastic_contact/base/spelling.h>
 
+#include <boost/crc.hpp>
 #include <fcntl.h>
 #include <nlohmann/json.hpp>
 #include <sys/file.h>
@@ -300,6 +301,16 @@ namespace Viscoplastic
       if (fs::exists(directory / name, error))
         return (directory / name).string();
     return "";
+  }
+
+
+
+  std::uint32_t
+  checksum(const std::string &bytes)
+  {
+    boost::crc_32_type crc;
+    crc.process_bytes(bytes.data(), bytes.size());
+    return crc.checksum();
   }
 
 

@@ -3,10 +3,9 @@
 #include <deal.II/base/mu_parser_internal.h>
 #include <deal.II/base/utilities.h>
 
-#include <viscoplastic_contact/base/spelling.h>
+#include <viscoplastic_contact/base/files.h>
+#include <viscoplastic_contact/base/messages.h>
 #include <viscoplastic_contact/base/table.h>
-
-#include <boost/crc.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -21,16 +20,6 @@ namespace Viscoplastic
   {
     // Measured curves are shorter; this bounds memory.
     const std::size_t most_numbers = 10'000'000;
-
-
-
-    unsigned int
-    crc(const std::string &text)
-    {
-      boost::crc_32_type crc;
-      crc.process_bytes(text.data(), text.size());
-      return crc.checksum();
-    }
 
 
 
@@ -82,7 +71,7 @@ namespace Viscoplastic
     , section(section)
     , interpolation(interpolation)
     , outside(outside)
-    , checksum(crc(text))
+    , checksum(Viscoplastic::checksum(text))
   {
     std::istringstream       input(text);
     std::string              line;

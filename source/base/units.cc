@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <deal.II/base/exceptions.h>
 
-#include <viscoplastic_contact/base/spelling.h>
+#include <viscoplastic_contact/base/messages.h>
 #include <viscoplastic_contact/base/units.h>
 
 #include <algorithm>
@@ -273,17 +273,6 @@ namespace Viscoplastic
 
 
 
-  Dimension
-  Dimension::power(const double exponent) const
-  {
-    return {exponent * length,
-            exponent * time,
-            exponent * stress,
-            exponent * temperature};
-  }
-
-
-
   std::string
   in_words(const Dimension &dimension)
   {
@@ -453,16 +442,6 @@ namespace Viscoplastic
 
 
 
-  double
-  Units::si(const Dimension &dimension) const
-  {
-    return std::pow(length.si, dimension.length) *
-           std::pow(time.si, dimension.time) *
-           std::pow(stress.si, dimension.stress);
-  }
-
-
-
   std::string
   Units::name(const Quantity quantity, const unsigned int dim_of_mesh) const
   {
@@ -522,24 +501,6 @@ namespace Viscoplastic
           return "s";
       }
     return "";
-  }
-
-
-
-  std::string
-  Units::label(const Quantity quantity, const unsigned int dim) const
-  {
-    const std::string unit = name(quantity, dim);
-    return unit.empty() ? "" : " [" + unit + ']';
-  }
-
-
-
-  std::string
-  Units::suffix(const Quantity quantity, const unsigned int dim) const
-  {
-    const std::string unit = name(quantity, dim);
-    return unit.empty() ? "" : ' ' + unit;
   }
 
 

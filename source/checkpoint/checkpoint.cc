@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <deal.II/grid/cell_id.h>
 
-#include <viscoplastic_contact/base/spelling.h>
+#include <viscoplastic_contact/base/messages.h>
 #include <viscoplastic_contact/checkpoint/checkpoint.h>
 #include <viscoplastic_contact/mesh/cell_order.h>
 
@@ -113,6 +113,40 @@ namespace Viscoplastic
         archive &vertices &n_points &values &sticks;
       }
     };
+
+
+
+    /// What a rank knows at its cells, in their order.
+    struct PackedPart
+    {
+      /// A bit a vertex with values here.
+      std::vector<std::uint8_t> vertices;
+      std::vector<double>       nodal, samples, estimate;
+      PackedContact             points;
+
+      template <typename Archive>
+      void
+      exchange(Archive &archive)
+      {
+        archive &vertices &nodal &samples &estimate;
+        points.exchange(archive);
+      }
+    };
+
+
+
+    /// Those of the fields that have been packed.
+    template <typename Field, std::size_t n>
+    std::vector<Field>
+    packed_ones(const std::array<bool, n>  &is_packed,
+                const std::array<Field, n> &fields)
+    {
+      std::vector<Field> result;
+      for (std::size_t f = 0; f < n; ++f)
+        if (is_packed[f])
+          result.push_back(fields[f]);
+      return result;
+    }
   } // namespace
 
 
@@ -193,11 +227,10 @@ namespace Viscoplastic
     const AdmissibleSpace<dim> &space  = stress_space.space;
     const auto                  fields = nodal_fields(state);
     std::vector<bool>           is_packed(space.owned.n_elements(), false);
-    std::vector<std::uint8_t>   vertices; // a bit a vertex with values here
-    std::vector<double>         nodal, samples, estimate;
-    const auto                  face_nodes = nodes_by_dof(face);
-    PackedContact               points;
-    std::size_t                 owned_cell = 0;
+    PackedPart                  part;
+    auto &[vertices, nodal, samples, estimate, points] = part;
+    const auto  face_nodes                             = nodes_by_dof(face);
+    std::size_t owned_cell                             = 0;
     for (const auto &cell : space.cells)
       {
         std::uint8_t with_values = 0, with_points = 0;
@@ -224,8 +257,8 @@ namespace Viscoplastic
                            node->second,
                            state.contact,
                            truncations,
-                           [&points](const double value) {
-                             points.values.push_back(value);
+                           [&values = part.points.values](const double value) {
+                             values.push_back(value);
                            });
             points.n_points.push_back(layout.n_node_points(node->second));
             for (unsigned int p = layout.first_point[node->second];
@@ -255,9 +288,8 @@ namespace Viscoplastic
       for (const DistributedVector *field : fields)
         if (field->size() > 0)
           nodal.push_back(field->begin()[*space.axial]);
-    BinaryWriter                       archive;
-    archive &vertices &nodal &samples &estimate;
-    points.exchange(archive);
+    BinaryWriter archive;
+    part.exchange(archive);
     return archive.bytes();
   }
 
@@ -298,6 +330,41 @@ namespace Viscoplastic
         , truncations(truncations)
       {}
 
+      /// Read the nodes at the vertices with these bits of a cell, which is
+      /// null if this rank does not know it. Returns how many are nodes of its
+      /// face.
+      template <typename Cell>
+      unsigned int
+      read(const std::uint8_t                                     vertices,
+           const Cell *const                                      cell,
+           const std::map<types::global_dof_index, unsigned int> &face_nodes)
+      {
+        unsigned int n = 0;
+        for (unsigned int v = 0;
+             v < GeometryInfo<Cell::AccessorType::dimension>::vertices_per_cell;
+             ++v)
+          if ((vertices >> v & 1) != 0)
+            {
+              const auto node =
+                cell != nullptr ?
+                  face_nodes.find((*cell)->vertex_dof_index(v, 0)) :
+                  face_nodes.end();
+              const bool is_here = node != face_nodes.end();
+              read(is_here ? std::optional(node->second) : std::nullopt);
+              n += is_here;
+            }
+        return n;
+      }
+
+      bool
+      is_at_end() const
+      {
+        return next_node == packed.n_points.size() &&
+               next_point == packed.sticks.size() &&
+               next_value == packed.values.size();
+      }
+
+    private:
       /// The next node that was packed is @p node, or none of this rank.
       void
       read(const std::optional<unsigned int> node)
@@ -321,15 +388,6 @@ namespace Viscoplastic
             packed.sticks[point + p];
       }
 
-      bool
-      is_at_end() const
-      {
-        return next_node == packed.n_points.size() &&
-               next_point == packed.sticks.size() &&
-               next_value == packed.values.size();
-      }
-
-    private:
       const PackedContact                 &packed;
       const ContactLayout                 &layout;
       ContactState                        &contact;
@@ -352,22 +410,17 @@ namespace Viscoplastic
     AssertDimension(packed.meshes.size(), packed.fields.size());
     const AdmissibleSpace<dim> &space = stress_space.space;
     const auto &triangulation         = space.dof_handler.get_triangulation();
-    std::vector<DistributedVector *> targets;
-    for (unsigned int f = 0; f < packed.has_nodal_field.size(); ++f)
-      if (packed.has_nodal_field[f])
-        targets.push_back(nodal_fields(state)[f]);
-    const unsigned int                n_fields = targets.size();
-    std::vector<IrreversibleStress *> sampled;
-    for (unsigned int f = 0; f < packed.has_sample_field.size(); ++f)
-      if (packed.has_sample_field[f])
-        sampled.push_back(sample_fields(state)[f]);
-    const std::size_t n_z = stress_space.n_samples * 6; // a cell and field
+    const auto  targets =
+      packed_ones(packed.has_nodal_field, nodal_fields(state));
+    const auto sampled =
+      packed_ones(packed.has_sample_field, sample_fields(state));
+    const unsigned int n_fields = targets.size();
+    const std::size_t  n_z = stress_space.n_samples * 6; // a cell and field
 
-    const auto                     cells   = local_cells(space);
-    const std::size_t              n_owned = space.cells.size();
+    const auto                     cells = local_cells(space);
     std::vector<DistributedVector> values(n_fields, space.owned_vector());
     for (IrreversibleStress *field : sampled)
-      field->resize(n_owned * stress_space.n_samples);
+      field->resize(space.cells.size() * stress_space.n_samples);
     if (packed.has_estimate)
       squared_estimate.reinit(triangulation.n_active_cells());
     const auto           face_nodes = nodes_by_dof(face);
@@ -375,21 +428,17 @@ namespace Viscoplastic
     const ContactLayout &layout = face != nullptr ? face->layout() : no_face;
     state.contact = ContactState(std::vector<double>(layout.points.size()));
     for (FaceTruncation *truncation : truncations)
-      {
-        truncation->projector.resize(layout.n_nodes());
-        truncation->spring.resize(layout.n_nodes());
-      }
+      for (auto *blocks : {&truncation->projector, &truncation->spring})
+        blocks->resize(layout.n_nodes());
     std::size_t n_values = 0, n_face_nodes = 0, n_cells = 0;
-    for (std::size_t part = 0; part < packed.meshes.size(); ++part)
+    for (std::size_t p = 0; p < packed.meshes.size(); ++p)
       {
         const std::vector<CellId> ids =
-          unpack_mesh<dim>(packed.meshes[part], triangulation.n_cells(0));
-        std::vector<std::uint8_t>          vertices;
-        std::vector<double>                nodal, samples, estimate;
-        BinaryReader                       archive(packed.fields[part]);
-        archive &vertices &nodal &samples &estimate;
-        PackedContact                      points;
-        points.exchange(archive);
+          unpack_mesh<dim>(packed.meshes[p], triangulation.n_cells(0));
+        PackedPart   part;
+        BinaryReader archive(packed.fields[p]);
+        part.exchange(archive);
+        const auto &[vertices, nodal, samples, estimate, points] = part;
         require(archive.is_at_end() && vertices.size() == ids.size() &&
                 points.vertices.size() == (face ? ids.size() : 0) &&
                 samples.size() == sampled.size() * n_z * ids.size() &&
@@ -419,27 +468,18 @@ namespace Viscoplastic
                     }
                   next += n_fields * dim;
                 }
-            for (unsigned int v = 0;
-                 face && v < GeometryInfo<dim>::vertices_per_cell;
-                 ++v)
-              if ((points.vertices[i] >> v & 1) != 0)
-                {
-                  const auto node =
-                    is_known ? face_nodes.find(
-                                 found->second.first->vertex_dof_index(v, 0)) :
-                               face_nodes.end();
-                  const bool is_here = node != face_nodes.end();
-                  of_nodes.read(is_here ? std::optional(node->second) :
-                                          std::nullopt);
-                  n_face_nodes += is_here;
-                }
+            if (face)
+              n_face_nodes +=
+                of_nodes.read(points.vertices[i],
+                              is_known ? &found->second.first : nullptr,
+                              face_nodes);
             if (!is_known || !found->second.second)
               continue;
-            const std::size_t owned_index = *found->second.second;
             ++n_cells;
             for (std::size_t f = 0; f < sampled.size(); ++f)
               for (std::size_t j = 0; j < n_z; ++j)
-                (*sampled[f])[owned_index * stress_space.n_samples + j / 6]
+                (*sampled[f])[*found->second.second * stress_space.n_samples +
+                              j / 6]
                   .begin_raw()[j % 6] =
                   samples[(i * sampled.size() + f) * n_z + j];
             if (packed.has_estimate)
@@ -462,7 +502,7 @@ namespace Viscoplastic
         *targets[f] = space.ghosted_vector();
         *targets[f] = values[f];
       }
-    return n_cells == n_owned &&
+    return n_cells == space.cells.size() &&
            n_values * dim == space.dof_handler.n_locally_owned_dofs() &&
            n_face_nodes == face_nodes.size();
   }

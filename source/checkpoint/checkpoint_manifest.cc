@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <deal.II/base/exceptions.h>
 
+#include <viscoplastic_contact/base/files.h>
 #include <viscoplastic_contact/checkpoint/checkpoint_manifest.h>
-
-#include <boost/crc.hpp>
 
 #include <iomanip>
 #include <sstream>
@@ -18,16 +17,6 @@ namespace Viscoplastic
   namespace
   {
     const std::string first_line = first_words_of_manifests + "10";
-  }
-
-
-
-  std::uint32_t
-  checksum(const std::string &bytes)
-  {
-    boost::crc_32_type crc;
-    crc.process_bytes(bytes.data(), bytes.size());
-    return crc.checksum();
   }
 
 

@@ -4,7 +4,6 @@
 
 #include <viscoplastic_contact/base/files.h>
 #include <viscoplastic_contact/base/messages.h>
-#include <viscoplastic_contact/base/spelling.h>
 #include <viscoplastic_contact/checkpoint/checkpoint_store.h>
 
 #include <algorithm>
@@ -194,14 +193,6 @@ namespace Viscoplastic
     , rank(Utilities::MPI::this_mpi_process(communicator))
     , n_ranks(Utilities::MPI::n_mpi_processes(communicator))
   {}
-
-
-
-  std::string
-  CheckpointStore::path(const unsigned int n) const
-  {
-    return directory + "step_" + Utilities::int_to_string(n, 6);
-  }
 
 
 
@@ -403,21 +394,6 @@ namespace Viscoplastic
 
 
 
-  void
-  CheckpointStore::remove_before(const unsigned int        n,
-                                 const unsigned int        n_kept,
-                                 std::vector<std::string> &remarks) const
-  {
-    std::vector<std::string> older;
-    for (const Entry &entry : entries())
-      if (entry.is_complete && entry.n < n && !own_files(entry.path).empty())
-        older.push_back(entry.path);
-    for (std::size_t i = 0; i + n_kept <= older.size(); ++i)
-      remove_own(older[i], remarks);
-  }
-
-
-
   CheckpointStore::Removal
   CheckpointStore::remove_others(const unsigned int n,
                                  const unsigned int n_kept) const
@@ -451,9 +427,16 @@ namespace Viscoplastic
 
 
 
-  CheckpointStore::Removal
-  CheckpointStore::remove_all() const
+  void
+  CheckpointStore::remove_before(const unsigned int        n,
+                                 const unsigned int        n_kept,
+                                 std::vector<std::string> &remarks) const
   {
-    return remove_others(0, 0);
+    std::vector<std::string> older;
+    for (const Entry &entry : entries())
+      if (entry.is_complete && entry.n < n && !own_files(entry.path).empty())
+        older.push_back(entry.path);
+    for (std::size_t i = 0; i + n_kept <= older.size(); ++i)
+      remove_own(older[i], remarks);
   }
 } // namespace Viscoplastic

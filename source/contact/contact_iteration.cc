@@ -2,7 +2,7 @@
 #include <deal.II/base/timer.h>
 #include <deal.II/base/utilities.h>
 
-#include <viscoplastic_contact/base/heartbeat.h>
+#include <viscoplastic_contact/base/progress.h>
 #include <viscoplastic_contact/contact/contact_iteration.h>
 #include <viscoplastic_contact/contact/kink_search.h>
 

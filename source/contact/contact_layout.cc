@@ -5,41 +5,6 @@
 
 namespace Viscoplastic
 {
-  void
-  ContactLayout::add(const double          factor,
-                     const Vector<double> &x,
-                     Vector<double>       &y) const
-  {
-    for (unsigned int k = 0; k < n_dofs(); ++k)
-      y[k] += factor * x[k];
-  }
-
-
-
-  double
-  ContactLayout::sum(const double part) const
-  {
-    return Utilities::MPI::sum(part, communicator);
-  }
-
-
-
-  bool
-  ContactLayout::any(const bool here) const
-  {
-    return Utilities::MPI::max(here ? 1 : 0, communicator) == 1;
-  }
-
-
-
-  double
-  ContactLayout::dot(const Vector<double> &x, const Vector<double> &y) const
-  {
-    return sum(x.size() > 0 ? x * y : 0.);
-  }
-
-
-
   bool
   ContactLayout::has_plain_friction(const unsigned int node) const
   {
@@ -153,75 +118,4 @@ namespace Viscoplastic
 
 
 
-  bool
-  FaceTruncation::blocks_as(const FaceTruncation &other,
-                            const ContactLayout  &face) const
-  {
-    return !face.any(projector != other.projector);
-  }
-
-
-
-  bool
-  FaceTruncation::is_same_as(const FaceTruncation &other,
-                             const ContactLayout  &face) const
-  {
-    return !face.any(projector != other.projector || spring != other.spring);
-  }
-
-
-
-  void
-  FaceTruncation::check_belongs_to(const ContactLayout &face) const
-  {
-    AssertThrow(!face.any(projector.size() != face.n_nodes() ||
-                          spring.size() != face.n_nodes()),
-                ExcMessage("The state of the preconditioner belongs to another "
-                           "contact face."));
-  }
-
-
-
-  bool
-  FaceTruncation::has_springs(const ContactLayout &face) const
-  {
-    bool here = false;
-    for (const Tensor<2, 3> &block : spring)
-      here |= block.norm() > 0.;
-    return face.any(here);
-  }
-
-
-
-  void
-  FaceTruncation::project(const ContactLayout &face, Vector<double> &x) const
-  {
-    // Twice: what rounding leaves beside the space of large forces that are
-    // blocked, no iteration on the space takes away.
-    for (unsigned int n = 0; n < face.n_nodes(); ++n)
-      face.set_node_values(
-        projector[n] * (projector[n] * face.node_values(x, n)), n, x);
-  }
-
-
-
-  void
-  FaceTruncation::tilt_equations(const ContactLayout &face,
-                                 Vector<double>      &x) const
-  {
-    if (!transposed)
-      for (unsigned int n = 0; n < tilt.size(); ++n)
-        face.set_node_values(tilt[n] * face.node_values(x, n), n, x);
-  }
-
-
-
-  void
-  FaceTruncation::tilt_motions(const ContactLayout &face,
-                               Vector<double>      &x) const
-  {
-    if (transposed)
-      for (unsigned int n = 0; n < tilt.size(); ++n)
-        face.set_node_values(face.node_values(x, n) * tilt[n], n, x);
-  }
 } // namespace Viscoplastic

@@ -21,6 +21,28 @@ namespace Viscoplastic
 
 
 
+  std::optional<double>
+  aitken_factor(const ContactLayout       &face,
+                const double               factor,
+                const std::vector<double> &last_missing,
+                const std::vector<double> &missing)
+  {
+    double product = 0., square = 0.;
+    for (unsigned int p = 0; p < missing.size(); ++p)
+      {
+        const double difference = missing[p] - last_missing[p];
+        product += last_missing[p] * difference;
+        square += difference * difference;
+      }
+    product = face.sum(product);
+    square  = face.sum(square);
+    if (!(square > 0.))
+      return {};
+    return -factor * product / square;
+  }
+
+
+
   CoulombBounds::CoulombBounds(
     const CoulombLaw                &law,
     const ContactLayout             &face,
@@ -138,21 +160,10 @@ namespace Viscoplastic
       }
     if (has_moved)
       {
-        double product = 0., square = 0.;
-        for (unsigned int p = 0; p < missing.size(); ++p)
-          {
-            const double difference = missing[p] - last_missing[p];
-            product += last_missing[p] * difference;
-            square += difference * difference;
-          }
-        product = face.sum(product);
-        square  = face.sum(square);
-        if (square > 0.)
-          {
-            // Away from a solution that repels.
-            const double aitken = -share * product / square;
-            share = aitken > 0. ? std::clamp(aitken, 0.05, 1.) : 1.;
-          }
+        // Not positive: away from a solution that repels.
+        if (const auto aitken =
+              aitken_factor(face, share, last_missing, missing))
+          share = *aitken > 0. ? std::clamp(*aitken, 0.05, 1.) : 1.;
       }
     for (unsigned int p = 0; p < missing.size(); ++p)
       state.bound[p] += share * missing[p];

@@ -39,52 +39,6 @@ namespace Viscoplastic
 
 
 
-  void
-  NormalCompliance::add(const double stiffness, const double exponent)
-  {
-    pieces.push_back({stiffness, exponent});
-  }
-
-
-
-  double
-  NormalCompliance::force(const double w) const
-  {
-    double sum = 0.;
-    if (w > 0.)
-      for (const Piece &piece : pieces)
-        sum += piece.stiffness * std::pow(w, piece.exponent);
-    return sum;
-  }
-
-
-
-  double
-  NormalCompliance::slope(const double w) const
-  {
-    double sum = 0.;
-    if (w > 0.)
-      for (const Piece &piece : pieces)
-        sum +=
-          piece.exponent * piece.stiffness * std::pow(w, piece.exponent - 1.);
-    return sum;
-  }
-
-
-
-  double
-  NormalCompliance::energy(const double w) const
-  {
-    double sum = 0.;
-    if (w > 0.)
-      for (const Piece &piece : pieces)
-        sum += piece.stiffness * std::pow(w, piece.exponent + 1.) /
-               (piece.exponent + 1.);
-    return sum;
-  }
-
-
-
   double
   NormalCompliance::penetration(const double p) const
   {

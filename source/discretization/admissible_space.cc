@@ -52,14 +52,11 @@ namespace Viscoplastic
     make_surface_normals(const DoFHandler<dim> &dof_handler,
                          const Scene<dim>      &scene)
     {
-      const bool any = std::any_of(scene.boundary.begin(),
-                                   scene.boundary.end(),
-                                   [](const auto &entry) {
-                                     return entry.second.normal_varies;
-                                   });
-      return any ? std::make_unique<const SurfaceNormals<dim>>(
-                     dof_handler, hanging_nodes_of(dof_handler), scene) :
-                   nullptr;
+      return scene.on_any_boundary(
+               [](const auto &b) { return b.normal_varies; }) ?
+               std::make_unique<const SurfaceNormals<dim>>(
+                 dof_handler, hanging_nodes_of(dof_handler), scene) :
+               nullptr;
     }
 
 
@@ -342,35 +339,6 @@ namespace Viscoplastic
 
   template <int dim>
   void
-  AdmissibleSpace<dim>::restrict_to_unknowns(DistributedVector &in_frames) const
-  {
-    for (std::size_t i = 0; i < is_excluded.size(); ++i)
-      if (is_excluded[i])
-        in_frames.begin()[i] = 0.;
-  }
-
-
-
-  template <int dim>
-  DistributedVector
-  AdmissibleSpace<dim>::owned_vector() const
-  {
-    return DistributedVector(owned, communicator);
-  }
-
-
-
-  template <int dim>
-  DistributedVector
-  AdmissibleSpace<dim>::ghosted_vector() const
-  {
-    return DistributedVector(owned, relevant, communicator);
-  }
-
-
-
-  template <int dim>
-  void
   AdmissibleSpace<dim>::add_cartesian_load(std::vector<double> &cartesian,
                                            DistributedVector   &load) const
   {
@@ -450,17 +418,6 @@ namespace Viscoplastic
       }
     distribute_hanging_nodes(cartesian);
     ghosted = cartesian;
-  }
-
-
-
-  template <int dim>
-  void
-  AdmissibleSpace<dim>::distribute_hanging_nodes(
-    DistributedVector &cartesian) const
-  {
-    if (any_hanging)
-      hanging_cartesian.distribute(cartesian);
   }
 
 

@@ -157,6 +157,49 @@ namespace Viscoplastic
             answers[q] = received.second[q];
       return answers;
     }
+
+
+
+    /// The refined cell that a node is a new one of.
+    template <int dim>
+    struct Origin
+    {
+      int           level = -1, index = 0;
+      Midpoint<dim> midpoint;
+    };
+
+
+
+    /// For each owned node, of which those with a level that is not zero hang.
+    /// Sets the levels of the others.
+    template <int dim>
+    std::vector<Origin<dim>>
+    find_origins(const VertexNodes<dim>   &nodes,
+                 const Triangulation<dim> &triangulation,
+                 NodeHierarchy            &hierarchy)
+    {
+      std::vector<Origin<dim>> origins(hierarchy.first_level.size());
+      for (const auto &cell : triangulation.cell_iterators())
+        if (cell->has_children())
+          for (unsigned int c = 0; c < cell->n_children(); ++c)
+            for (const unsigned int v : cell->vertex_indices())
+              {
+                // Vertex v of child c; the cell has it, too, if v is c.
+                const unsigned int vertex = cell->child(c)->vertex_index(v);
+                if (v == c || !nodes.owns(vertex))
+                  continue;
+                const unsigned int n = nodes.position(vertex);
+                if (hierarchy.first_level[n] != 0) // hanging, or known
+                  continue;
+                hierarchy.first_level[n] = cell->level() + 1;
+                origins[n].level         = cell->level();
+                origins[n].index         = cell->index();
+                for (unsigned int d = 0; d < dim; ++d)
+                  origins[n].midpoint.halves[d] =
+                    ((c >> d) & 1U) + ((v >> d) & 1U);
+              }
+      return origins;
+    }
   } // namespace
 
 
@@ -182,37 +225,12 @@ namespace Viscoplastic
                                                          dim))
         hierarchy.first_level[n] = hanging;
 
-    // The refined cell that each node is a new one of.
-    struct Origin
-    {
-      int           level = -1, index = 0;
-      Midpoint<dim> midpoint;
-    };
-    std::vector<Origin> origins(n_owned);
-    for (const auto &cell : triangulation.cell_iterators())
-      if (cell->has_children())
-        for (unsigned int c = 0; c < cell->n_children(); ++c)
-          for (const unsigned int v : cell->vertex_indices())
-            {
-              // Vertex v of child c; the cell has it, too, if v is c.
-              const unsigned int vertex = cell->child(c)->vertex_index(v);
-              if (v == c || !nodes.owns(vertex))
-                continue;
-              const unsigned int n = nodes.position(vertex);
-              if (hierarchy.first_level[n] != 0) // hanging, or known
-                continue;
-              hierarchy.first_level[n] = cell->level() + 1;
-              origins[n].level         = cell->level();
-              origins[n].index         = cell->index();
-              for (unsigned int d = 0; d < dim; ++d)
-                origins[n].midpoint.halves[d] =
-                  ((c >> d) & 1U) + ((v >> d) & 1U);
-            }
+    const auto origins = find_origins(nodes, triangulation, hierarchy);
 
     // Parents that other ranks know.
     std::vector<std::pair<CellId::binary_type, unsigned int>> questions;
     std::map<unsigned int, unsigned int> question_of_vertex;
-    for (const Origin &origin : origins)
+    for (const Origin<dim> &origin : origins)
       if (origin.level >= 0)
         {
           const CellIterator cell(&triangulation, origin.level, origin.index);
@@ -230,7 +248,7 @@ namespace Viscoplastic
     std::map<Node, double> row;
     hierarchy.row_begin.assign(1, 0);
     hierarchy.row_begin.reserve(n_owned + 1);
-    for (const Origin &origin : origins)
+    for (const Origin<dim> &origin : origins)
       {
         if (origin.level >= 0)
           {

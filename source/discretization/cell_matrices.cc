@@ -3,7 +3,7 @@
 #include <deal.II/dofs/dof_tools.h>
 #include <deal.II/lac/trilinos_sparsity_pattern.h>
 
-#include <viscoplastic_contact/base/instantiate_member.h>
+#include <viscoplastic_contact/base/types.h>
 #include <viscoplastic_contact/discretization/admissible_space.h>
 
 // The part of AdmissibleSpace that assembles matrices in frames.
@@ -52,20 +52,6 @@ namespace Viscoplastic
           }
       }
     pattern.compress();
-  }
-
-
-
-  template <int dim>
-  void
-  AdmissibleSpace<dim>::get_dofs(
-    const typename DoFHandler<dim>::active_cell_iterator &cell,
-    std::vector<types::global_dof_index>                 &dofs) const
-  {
-    dofs.resize(dof_handler.get_fe().n_dofs_per_cell());
-    cell->get_dof_indices(dofs);
-    for (unsigned int d = 0; axial && d < dim; ++d)
-      dofs.push_back(dof_handler.n_dofs() + d);
   }
 
 
@@ -134,6 +120,5 @@ namespace Viscoplastic
 
 
   VISCOPLASTIC_INSTANTIATE_MEMBER(AdmissibleSpace, make_sparsity_pattern);
-  VISCOPLASTIC_INSTANTIATE_MEMBER(AdmissibleSpace, get_dofs);
   VISCOPLASTIC_INSTANTIATE_MEMBER(AdmissibleSpace, add_cell_matrix);
 } // namespace Viscoplastic

@@ -6,6 +6,36 @@
 
 namespace Viscoplastic
 {
+  namespace
+  {
+    /// What a node depends on, itself unless it hangs, with weights.
+    std::vector<std::pair<types::global_dof_index, double>>
+    independent_nodes(const AffineConstraints<double> &hanging,
+                      const types::global_dof_index    dof)
+    {
+      if (!hanging.is_constrained(dof))
+        return {{dof, 1.}};
+      return *hanging.get_constraint_entries(dof);
+    }
+
+
+
+    std::shared_ptr<const Utilities::MPI::Partitioner>
+    with_ghosts(const IndexSet                      &own,
+                std::vector<types::global_dof_index> others,
+                const MPI_Comm                       communicator)
+    {
+      std::sort(others.begin(), others.end());
+      IndexSet ghosts(own.size());
+      ghosts.add_indices(others.begin(), others.end());
+      return std::make_shared<const Utilities::MPI::Partitioner>(own,
+                                                                 ghosts,
+                                                                 communicator);
+    }
+  } // namespace
+
+
+
   template <int dim>
   ContactFace<dim>::ContactFace(const AdmissibleSpace<dim> &space)
     : space(space)
@@ -22,6 +52,7 @@ namespace Viscoplastic
         }
     make_nodes();
     make_shares();
+    make_weights();
     if (!space.mortar_rows.empty())
       {
         std::set<types::boundary_id> other_sides;
@@ -158,7 +189,6 @@ namespace Viscoplastic
                                   QGauss<dim - 1>(2),
                                   update_values | update_JxW_values |
                                     update_quadrature_points);
-    const auto       &hanging = space.cartesian_hanging_nodes();
     for (const auto &cell : space.cells)
       for (const unsigned int f : cell->face_indices())
         if (cell->face(f)->at_boundary())
@@ -197,15 +227,10 @@ namespace Viscoplastic
                       for (const auto &obstacle : frame.obstacles)
                         add_to(p++, true, obstacle.boundary_ids);
                     };
-                    const auto dof = cell->vertex_dof_index(v, 0);
-                    if (hanging.is_constrained(dof))
-                      {
-                        for (const auto &[master, weight] :
-                             *hanging.get_constraint_entries(dof))
-                          add(master, weight);
-                      }
-                    else
-                      add(dof, 1.);
+                    for (const auto &[dof, weight] :
+                         independent_nodes(space.cartesian_hanging_nodes(),
+                                           cell->vertex_dof_index(v, 0)))
+                      add(dof, weight);
                   }
                 samples.push_back(
                   {face_values.quadrature_point(q), &condition});
@@ -216,25 +241,27 @@ namespace Viscoplastic
     for (const GlobalShare &share : global_shares)
       if (!own_points.is_element(share.point))
         others.push_back(share.point);
-    std::sort(others.begin(), others.end());
-    IndexSet ghost_points(own_points.size());
-    ghost_points.add_indices(others.begin(), others.end());
-    numbers =
-      std::make_shared<const Utilities::MPI::Partitioner>(own_points,
-                                                          ghost_points,
-                                                          space.communicator);
+    numbers = with_ghosts(own_points, std::move(others), space.communicator);
     for (const GlobalShare &share : global_shares)
       shares.push_back({share.sample,
                         numbers->global_to_local(share.point),
                         share.of_obstacle,
                         share.value});
+  }
+
+
+
+  template <int dim>
+  void
+  ContactFace<dim>::make_weights()
+  {
     const auto one = [](const Sample &) { return 1.; };
     point_weights  = sum_shares(one);
     if (any_obstacles)
       {
         const std::vector<double> of_obstacles = sum_shares(one, true);
         for (unsigned int p = 0; p < point_weights.size(); ++p)
-          if (face.points[p].is_obstacle)
+          if (layout().points[p].is_obstacle)
             point_weights[p] = of_obstacles[p];
       }
   }
@@ -297,18 +324,6 @@ namespace Viscoplastic
             part[p] = point_weights[p] > 0. ? part[p] / point_weights[p] : 0.;
           }
       }
-  }
-
-
-
-  template <int dim>
-  types::global_dof_index
-  ContactFace<dim>::n_global_points(const bool of_obstacles) const
-  {
-    types::global_dof_index n = 0;
-    for (const ContactLayout::Point &point : layout().points)
-      n += point.is_obstacle == of_obstacles;
-    return Utilities::MPI::sum(n, space.communicator);
   }
 
 

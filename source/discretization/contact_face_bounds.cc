@@ -2,7 +2,7 @@
 #include <deal.II/base/mpi.h>
 #include <deal.II/lac/la_parallel_vector.h>
 
-#include <viscoplastic_contact/base/instantiate_member.h>
+#include <viscoplastic_contact/base/types.h>
 #include <viscoplastic_contact/discretization/contact_face.h>
 
 #include <algorithm>

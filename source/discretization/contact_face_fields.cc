@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <deal.II/base/mpi.h>
 
-#include <viscoplastic_contact/base/instantiate_member.h>
 #include <viscoplastic_contact/base/number_range.h>
+#include <viscoplastic_contact/base/types.h>
 #include <viscoplastic_contact/discretization/contact_face.h>
 
 // What displacements and multipliers are at the points of the face, and as
@@ -27,21 +27,6 @@ namespace Viscoplastic
 
 
   template <int dim>
-  Tensor<1, dim>
-  ContactFace<dim>::resultant(const ContactState &state,
-                              const bool          of_obstacles) const
-  {
-    const ContactLayout &face = layout();
-    Tensor<1, dim>       sum;
-    for (unsigned int p = 0; p < face.points.size(); ++p)
-      if (face.points[p].is_obstacle == of_obstacles)
-        sum += cartesian(p, state.multiplier[p]);
-    return Utilities::MPI::sum(sum, space.communicator);
-  }
-
-
-
-  template <int dim>
   std::map<types::boundary_id, typename ContactFace<dim>::BoundaryForces>
   ContactFace<dim>::forces_by_boundary(const ContactState &state) const
   {
@@ -60,19 +45,6 @@ namespace Viscoplastic
           Utilities::MPI::sum(forces.contact, space.communicator);
       }
     return result;
-  }
-
-
-
-  template <int dim>
-  Tensor<1, dim>
-  ContactFace<dim>::resultant_on_foundations(const ContactState &state) const
-  {
-    Tensor<1, dim> sum;
-    for (unsigned int p = 0; p < layout().points.size(); ++p)
-      if (!space.scene.boundary.at(boundary_ids[p].front()).against)
-        sum += cartesian(p, state.multiplier[p]);
-    return Utilities::MPI::sum(sum, space.communicator);
   }
 
 
@@ -249,9 +221,7 @@ namespace Viscoplastic
 
 
   VISCOPLASTIC_INSTANTIATE_MEMBER(ContactFace, cartesian);
-  VISCOPLASTIC_INSTANTIATE_MEMBER(ContactFace, resultant);
   VISCOPLASTIC_INSTANTIATE_MEMBER(ContactFace, forces_by_boundary);
-  VISCOPLASTIC_INSTANTIATE_MEMBER(ContactFace, resultant_on_foundations);
   VISCOPLASTIC_INSTANTIATE_MEMBER(ContactFace, slips);
   VISCOPLASTIC_INSTANTIATE_MEMBER(ContactFace, slip_rates);
   VISCOPLASTIC_INSTANTIATE_MEMBER(ContactFace, density);

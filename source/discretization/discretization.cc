@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <viscoplastic_contact/discretization/discretization.h>
-#include <viscoplastic_contact/discretization/volumetric_integration.h>
 
 #include <limits>
 
@@ -37,19 +36,14 @@ namespace Viscoplastic
     bool
     has_bilateral_contact(const Scene<dim> &scene)
     {
-      return std::any_of(
-        scene.boundary.begin(), scene.boundary.end(), [](const auto &pair) {
-          const BoundaryCondition<dim> &condition = pair.second;
-          return condition.role == BoundaryRole::contact &&
-                 condition.is_bilateral() && !condition.is_glued();
-        });
+      return scene.on_any_boundary([](const auto &b) {
+        return b.role == BoundaryRole::contact && b.is_bilateral() &&
+               !b.is_glued();
+      });
     }
-  } // namespace
 
 
 
-  namespace
-  {
     /// About how many steps a mesh stays. In runs to a tolerance there are
     /// fewer, but they are long: fronts that cross many nodes take twice the
     /// iterations of those by which costs were measured.

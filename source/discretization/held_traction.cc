@@ -79,9 +79,7 @@ namespace Viscoplastic
   bool
   HeldTraction<dim>::is_needed(const Scene<dim> &scene)
   {
-    return std::any_of(scene.boundary.begin(),
-                       scene.boundary.end(),
-                       [](const auto &pair) { return holds(pair.second); });
+    return scene.on_any_boundary([](const auto &b) { return holds(b); });
   }
 
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <viscoplastic_contact/base/instantiate_member.h>
+#include <viscoplastic_contact/base/types.h>
 #include <viscoplastic_contact/discretization/admissible_space.h>
 
 #include <map>
@@ -109,21 +109,6 @@ namespace Viscoplastic
 
 
   template <int dim>
-  bool
-  AdmissibleSpace<dim>::is_coupled(
-    const std::vector<types::global_dof_index> &dofs) const
-  {
-    if (couplings.empty())
-      return false;
-    for (std::size_t a = 0; a < dofs.size(); a += dim)
-      if (coupled_nodes[relevant.index_within_set(dofs[a]) / dim])
-        return true;
-    return false;
-  }
-
-
-
-  template <int dim>
   void
   AdmissibleSpace<dim>::couple(std::vector<types::global_dof_index> &dofs,
                                FullMatrix<double> &cell_matrix) const
@@ -174,6 +159,5 @@ namespace Viscoplastic
   VISCOPLASTIC_INSTANTIATE_MEMBER(AdmissibleSpace, make_couplings);
   VISCOPLASTIC_INSTANTIATE_MEMBER(AdmissibleSpace, make_relative);
   VISCOPLASTIC_INSTANTIATE_MEMBER(AdmissibleSpace, add_opposite);
-  VISCOPLASTIC_INSTANTIATE_MEMBER(AdmissibleSpace, is_coupled);
   VISCOPLASTIC_INSTANTIATE_MEMBER(AdmissibleSpace, couple);
 } // namespace Viscoplastic

@@ -53,6 +53,20 @@ namespace Viscoplastic
 
 
 
+    /// Whether no condition fixes a component of a frame.
+    template <int dim>
+    std::array<bool, dim>
+    free_directions(const NodalFrame<dim> &frame)
+    {
+      std::array<bool, dim> is_free;
+      is_free.fill(true);
+      for (unsigned int i = 0; i < frame.n_fixed; ++i)
+        is_free[frame.fixed[i]] = false;
+      return is_free;
+    }
+
+
+
     /// Whether the foundations of two pieces that leave the same slip at a node
     /// move alike there.
     template <int dim>
@@ -68,10 +82,7 @@ namespace Viscoplastic
         return false;
       // The same motion along pieces at an angle is the same slip if each piece
       // leaves as much of each free direction.
-      std::array<bool, dim> is_free;
-      is_free.fill(true);
-      for (unsigned int i = 0; i < frame.n_fixed; ++i)
-        is_free[frame.fixed[i]] = false;
+      const auto is_free = free_directions(frame);
       for (unsigned int i = 0; i < dim; ++i)
         if (const auto e = column(frame.directions, i);
             is_free[i] &&
@@ -92,11 +103,8 @@ namespace Viscoplastic
                SymmetricTensor<2, dim> &form)
     {
       // abs(slip)^2 as a quadratic form of the free frame components.
-      form = 0.;
-      std::array<bool, dim> is_free;
-      is_free.fill(true);
-      for (unsigned int i = 0; i < frame.n_fixed; ++i)
-        is_free[frame.fixed[i]] = false;
+      form               = 0.;
+      const auto is_free = free_directions(frame);
       for (unsigned int i = 0; i < dim; ++i)
         for (unsigned int j = i; j < dim; ++j)
           if (is_free[i] && is_free[j])

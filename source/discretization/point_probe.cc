@@ -31,33 +31,6 @@ namespace Viscoplastic
 
 
 
-  template <int dim>
-  Tensor<1, dim>
-  PointProbe<dim>::value(const DistributedVector &ghosted_u) const
-  {
-    Tensor<1, dim> result;
-    if (is_mine)
-      for (unsigned int v = 0; v < n_vertices; ++v)
-        for (unsigned int d = 0; d < dim; ++d)
-          result[d] += shape_values[v] * ghosted_u.begin()[nodes[v] + d];
-    return Utilities::MPI::sum(result, communicator);
-  }
-
-
-
-  template <int dim>
-  void
-  PointProbe<dim>::add_force(const Tensor<1, dim> &force,
-                             std::vector<double>  &cartesian) const
-  {
-    if (is_mine)
-      for (unsigned int v = 0; v < n_vertices; ++v)
-        for (unsigned int d = 0; d < dim; ++d)
-          cartesian[nodes[v] + d] += shape_values[v] * force[d];
-  }
-
-
-
   template class PointProbe<2>;
   template class PointProbe<3>;
 } // namespace Viscoplastic

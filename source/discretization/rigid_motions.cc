@@ -3,13 +3,13 @@
 #include <deal.II/base/quadrature_lib.h>
 #include <deal.II/fe/fe_values.h>
 
-#include <viscoplastic_contact/base/instantiate_member.h>
+#include <viscoplastic_contact/base/types.h>
 #include <viscoplastic_contact/discretization/admissible_space.h>
-#include <viscoplastic_contact/discretization/body_parts.h>
 #include <viscoplastic_contact/discretization/seen_motions.h>
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 #include <sstream>
 
 // The rigid motions of a body: those that its conditions have to prevent, and
@@ -20,6 +20,83 @@ namespace Viscoplastic
   namespace
   {
     constexpr unsigned int all_parts = numbers::invalid_unsigned_int;
+
+
+
+    /// The parts of the present body, joined by faces. Without stages and
+    /// contact between bodies it is one.
+    struct BodyParts
+    {
+      unsigned int n = 1;
+      /// The parts that each boundary node belongs to, by its position in the
+      /// list of boundary nodes.
+      std::vector<std::set<unsigned int>> of_node;
+      /// The part of each cell of the coarse mesh, by
+      /// CellId::get_coarse_cell_id(); empty where there is one.
+      std::vector<unsigned int> of_cell;
+    };
+
+
+
+    template <int dim>
+    BodyParts
+    find_parts(const AdmissibleSpace<dim> &space)
+    {
+      const auto &nodes = space.boundary_nodes();
+      BodyParts   result;
+      if (!space.scene.has_stages() && !space.scene.has_contact_pairs())
+        {
+          result.of_node.assign(nodes.size(), {0});
+          return result;
+        }
+      // All ranks have the coarse mesh, whose cells are present or absent as a
+      // whole.
+      const auto &triangulation = space.dof_handler.get_triangulation();
+      const auto  is_present    = [&space](const auto &cell) {
+        return space.scene.is_present(cell->material_id());
+      };
+      unsigned int              &n_parts      = result.n;
+      std::vector<unsigned int> &part_of_cell = result.of_cell;
+      n_parts                                 = 0;
+      part_of_cell.assign(triangulation.n_cells(0),
+                          numbers::invalid_unsigned_int);
+      const auto part_of = [&part_of_cell](const auto &cell) -> unsigned int & {
+        return part_of_cell[cell->id().get_coarse_cell_id()];
+      };
+      for (const auto &first : triangulation.cell_iterators_on_level(0))
+        {
+          std::vector<typename Triangulation<dim>::cell_iterator> open{first};
+          const unsigned int n_found = n_parts;
+          while (!open.empty())
+            {
+              const auto cell = open.back();
+              open.pop_back();
+              if (!is_present(cell) ||
+                  part_of(cell) != numbers::invalid_unsigned_int)
+                continue;
+              part_of(cell) = n_found;
+              n_parts       = n_found + 1;
+              for (const unsigned int f : cell->face_indices())
+                if (!cell->at_boundary(f))
+                  open.push_back(cell->neighbor(f));
+            }
+        }
+
+      std::map<types::global_dof_index, std::size_t> number;
+      for (std::size_t i = 0; i < nodes.size(); ++i)
+        number[nodes[i].first_dof] = i;
+      result.of_node.resize(nodes.size());
+      for (const auto &cell : space.dof_handler.active_cell_iterators())
+        if (!cell->is_artificial() && is_present(cell))
+          for (const unsigned int v : cell->vertex_indices())
+            {
+              const auto node = number.find(cell->vertex_dof_index(v, 0));
+              if (node == number.end())
+                continue;
+              result.of_node[node->second].insert(part_of(cell));
+            }
+      return result;
+    }
 
 
 
@@ -134,6 +211,28 @@ namespace Viscoplastic
 
 
   template <int dim>
+  DistributedVector
+  AdmissibleSpace<dim>::number_parts(
+    const std::vector<unsigned int> &part_of_coarse_cell)
+  {
+    part_of_node.assign(node_position.size(), 0);
+    for (const auto &cell : dof_handler.active_cell_iterators())
+      if (!cell->is_artificial() && scene.is_present(cell->material_id()))
+        for (const unsigned int v : cell->vertex_indices())
+          if (const auto dof = cell->vertex_dof_index(v, 0);
+              owned.is_element(dof))
+            part_of_node[owned.index_within_set(dof) / dim] =
+              part_of_coarse_cell[cell->id().get_coarse_cell_id()];
+    DistributedVector numbers = owned_vector(), ghosted = ghosted_vector();
+    for (std::size_t n = 0; n < part_of_node.size(); ++n)
+      numbers.begin()[n * dim] = part_of_node[n];
+    ghosted = numbers;
+    return ghosted;
+  }
+
+
+
+  template <int dim>
   void
   AdmissibleSpace<dim>::check_rigid_motions()
   {
@@ -147,27 +246,9 @@ namespace Viscoplastic
     const auto group = [&](const unsigned int part) {
       return are_coupled ? 0 : part;
     };
-    const Point<dim> center = this->center();
-    if (are_coupled)
-      {
-        part_of_node.assign(node_position.size(), 0);
-        for (const auto &cell : dof_handler.active_cell_iterators())
-          if (!cell->is_artificial() && scene.is_present(cell->material_id()))
-            for (const unsigned int v : cell->vertex_indices())
-              if (const auto dof = cell->vertex_dof_index(v, 0);
-                  owned.is_element(dof))
-                part_of_node[owned.index_within_set(dof) / dim] =
-                  parts.of_cell[cell->id().get_coarse_cell_id()];
-      }
-    DistributedVector part_numbers;
-    if (are_coupled)
-      {
-        DistributedVector numbers = owned_vector();
-        for (std::size_t n = 0; n < part_of_node.size(); ++n)
-          numbers.begin()[n * dim] = part_of_node[n];
-        part_numbers = ghosted_vector();
-        part_numbers = numbers;
-      }
+    const Point<dim>        center = this->center();
+    const DistributedVector part_numbers =
+      are_coupled ? number_parts(parts.of_cell) : DistributedVector();
     for (const auto &x : node_position)
       radius = std::max(radius, x.distance(center));
     radius = Utilities::MPI::max(radius, communicator);
@@ -182,31 +263,24 @@ namespace Viscoplastic
       for (unsigned int a = 0; a < n_motions; ++a)
         row[(are_coupled ? part * n_motions : 0) + a] = motions[a] * direction;
     };
-    const auto add_row = [&](SeenMotions          &to,
-                             const unsigned int    part,
-                             const Point<dim>     &position,
-                             const Tensor<1, dim> &direction) {
-      RigidMotion row(n_together, 0.);
-      set_part(row, part, position, direction);
-      to.add(row);
-    };
     // That of a boundary node, relative to the body opposite if there is one.
     const auto add_row_of_node = [&](SeenMotions          &to,
                                      const unsigned int    part,
                                      const BoundaryNode   &node,
                                      const Tensor<1, dim> &direction) {
-      const auto of_node =
-        couplings_of_node.find(relevant.index_within_set(node.first_dof));
-      if (of_node == couplings_of_node.end())
-        return add_row(to, part, node.position, direction);
-      const Coupling &coupling = couplings[of_node->second[0].first];
-      RigidMotion     row(n_together, 0.);
+      RigidMotion row(n_together, 0.);
       set_part(row, part, node.position, direction);
-      set_part(row,
-               static_cast<unsigned int>(
-                 part_numbers.begin()[coupling.others[0].first]),
-               coupling.opposite,
-               -(coupling.projector * direction));
+      if (const auto of_node =
+            couplings_of_node.find(relevant.index_within_set(node.first_dof));
+          of_node != couplings_of_node.end())
+        {
+          const Coupling &coupling = couplings[of_node->second[0].first];
+          set_part(row,
+                   static_cast<unsigned int>(
+                     part_numbers.begin()[coupling.others[0].first]),
+                   coupling.opposite,
+                   -(coupling.projector * direction));
+        }
       to.add(row);
     };
     for (std::size_t m = 0; m < nodes.size(); ++m)
@@ -234,7 +308,9 @@ namespace Viscoplastic
                         [&](const unsigned int    part,
                             const Point<dim>     &x,
                             const Tensor<1, dim> &direction) {
-                          add_row(seen[group(part)], part, x, direction);
+                          RigidMotion row(n_together, 0.);
+                          set_part(row, part, x, direction);
+                          seen[group(part)].add(row);
                         });
       }
 
@@ -264,20 +340,6 @@ namespace Viscoplastic
           motions.empty(),
           ExcMessage(refusal(scene, parts.n, motions, may_be_held_by_contact)));
       }
-  }
-
-
-
-  template <int dim>
-  Point<dim>
-  AdmissibleSpace<dim>::center() const
-  {
-    Tensor<1, dim> sum;
-    const double   count = node_position.size();
-    for (const auto &x : node_position)
-      sum += x;
-    return Point<dim>(Utilities::MPI::sum(sum, communicator) /
-                      Utilities::MPI::sum(count, communicator));
   }
 
 
@@ -358,7 +420,7 @@ namespace Viscoplastic
 
 
   VISCOPLASTIC_INSTANTIATE_MEMBER(AdmissibleSpace, check_rigid_motions);
-  VISCOPLASTIC_INSTANTIATE_MEMBER(AdmissibleSpace, center);
+  VISCOPLASTIC_INSTANTIATE_MEMBER(AdmissibleSpace, number_parts);
   VISCOPLASTIC_INSTANTIATE_MEMBER(AdmissibleSpace, rigid_motion);
   VISCOPLASTIC_INSTANTIATE_MEMBER(AdmissibleSpace, rigid_body_modes);
   VISCOPLASTIC_INSTANTIATE_MEMBER(AdmissibleSpace, motions_held_by_contact);

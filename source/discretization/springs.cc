@@ -41,30 +41,6 @@ namespace Viscoplastic
 
 
   template <int dim>
-  template <typename Visitor>
-  void
-  Springs<dim>::for_each_point(const Visitor &visit) const
-  {
-    for (const Face &face : faces)
-      for (unsigned int q = 0; q < n_points; ++q)
-        visit(face, shape_values[face.number][q], face.stiffness[q]);
-  }
-
-
-
-  template <int dim>
-  double
-  Springs<dim>::total_stiffness() const
-  {
-    double sum = 0.;
-    for_each_point(
-      [&sum](const Face &, const auto &, const auto &K) { sum += trace(K); });
-    return Utilities::MPI::sum(sum, space.communicator);
-  }
-
-
-
-  template <int dim>
   Tensor<1, dim>
   Springs<dim>::displacement(const DistributedVector           &ghosted_u,
                              const Face                        &face,

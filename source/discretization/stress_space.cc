@@ -265,21 +265,6 @@ namespace Viscoplastic
 
 
   template <int dim>
-  SymmetricTensor<2, 3>
-  StressSpace<dim>::mean(const std::size_t            cell,
-                         const SymmetricTensor<2, 3> *samples) const
-  {
-    if (n_samples == 1)
-      return samples[0];
-    SymmetricTensor<2, 3> result;
-    for (unsigned int s = 0; s < n_samples; ++s)
-      result += samples[s] * (weight(cell, s) / volumes[cell]);
-    return result;
-  }
-
-
-
-  template <int dim>
   std::vector<SymmetricTensor<2, 3>>
   StressSpace<dim>::mean_stress(const DistributedVector  &ghosted_u,
                                 const IrreversibleStress &z) const

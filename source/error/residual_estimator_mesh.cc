@@ -7,7 +7,7 @@
 
 #include <viscoplastic_contact/base/messages.h>
 #include <viscoplastic_contact/discretization/initial_state.h>
-#include <viscoplastic_contact/discretization/places_opposite.h>
+#include <viscoplastic_contact/discretization/mortar_interpolation.h>
 #include <viscoplastic_contact/discretization/plane_faces.h>
 #include <viscoplastic_contact/discretization/thermal_strain.h>
 #include <viscoplastic_contact/error/residual_estimator.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <viscoplastic_contact/discretization/volumetric_integration.h>
+#include <viscoplastic_contact/discretization/discretization.h>
 #include <viscoplastic_contact/error/history_error.h>
 #include <viscoplastic_contact/error/kelly_estimator.h>
 #include <viscoplastic_contact/error/space_estimator.h>

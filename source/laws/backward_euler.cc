@@ -50,12 +50,9 @@ namespace Viscoplastic
         }
       return {};
     }
-  } // namespace
 
 
 
-  namespace
-  {
     /// dev a P + vol a I (x) I + along a s (x) s, P the deviator.
     SymmetricTensor<4, 3>
     transversal_tensor(const double                 dev,

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <viscoplastic_contact/base/spelling.h>
-#include <viscoplastic_contact/base/unexpected_end.h>
+#include <viscoplastic_contact/base/messages.h>
+#include <viscoplastic_contact/base/signals.h>
 #include <viscoplastic_contact/laws/law_library.h>
 
 #include <dlfcn.h>

@@ -3,7 +3,7 @@
 #include <deal.II/lac/solver_cg.h>
 #include <deal.II/lac/solver_gmres.h>
 
-#include <viscoplastic_contact/base/heartbeat.h>
+#include <viscoplastic_contact/base/progress.h>
 #include <viscoplastic_contact/contact/sparse_face_matrix.h>
 #include <viscoplastic_contact/linear_solvers/krylov_solver.h>
 #include <viscoplastic_contact/linear_solvers/residual_rounding.h>

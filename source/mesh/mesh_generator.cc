@@ -4,7 +4,6 @@
 #include <deal.II/grid/manifold_lib.h>
 
 #include <viscoplastic_contact/base/messages.h>
-#include <viscoplastic_contact/base/spelling.h>
 #include <viscoplastic_contact/base/types.h>
 #include <viscoplastic_contact/mesh/mesh.h>
 #include <viscoplastic_contact/mesh/mesh_size.h>

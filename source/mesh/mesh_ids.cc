@@ -1,13 +1,20 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <deal.II/base/function_parser.h>
+#include <deal.II/base/mpi.h>
+#include <deal.II/base/quadrature_lib.h>
+#include <deal.II/fe/fe_nothing.h>
+#include <deal.II/fe/fe_values.h>
 
 #include <viscoplastic_contact/base/expression.h>
 #include <viscoplastic_contact/base/types.h>
 #include <viscoplastic_contact/mesh/mesh_ids.h>
 
+#include <algorithm>
 #include <cmath>
+#include <map>
 #include <memory>
 #include <sstream>
+#include <vector>
 
 namespace Viscoplastic
 {
@@ -123,6 +130,26 @@ namespace Viscoplastic
 
 
   template <int dim>
+  std::set<std::pair<types::boundary_id, types::boundary_id>>
+  touching_boundaries(const Triangulation<dim> &triangulation)
+  {
+    std::map<unsigned int, std::set<types::boundary_id>> at_vertex;
+    for (const auto &cell : triangulation.cell_iterators_on_level(0))
+      for (const unsigned int f : cell->face_indices())
+        if (const auto face = cell->face(f); face->at_boundary())
+          for (const unsigned int v : face->vertex_indices())
+            at_vertex[face->vertex_index(v)].insert(face->boundary_id());
+    std::set<std::pair<types::boundary_id, types::boundary_id>> result;
+    for (const auto &[vertex, ids] : at_vertex)
+      for (const types::boundary_id a : ids)
+        for (const types::boundary_id b : ids)
+          result.emplace(a, b);
+    return result;
+  }
+
+
+
+  template <int dim>
   std::set<types::material_id>
   material_ids(const parallel::distributed::Triangulation<dim> &triangulation)
   {
@@ -134,7 +161,141 @@ namespace Viscoplastic
 
 
 
+  namespace
+  {
+    /// Call visit(normal, JxW) at points of all owned faces with an id.
+    template <int dim, typename Visitor>
+    void
+    visit_normals(
+      const parallel::distributed::Triangulation<dim> &triangulation,
+      const types::boundary_id                         id,
+      const Visitor                                   &visit)
+    {
+      // These points include the vertices, where warped faces deviate most.
+      const FE_Nothing<dim> fe;
+      FEFaceValues<dim>     face_values(fe,
+                                    QGaussLobatto<dim - 1>(3),
+                                    update_normal_vectors | update_JxW_values);
+      for (const auto &cell : triangulation.active_cell_iterators())
+        if (cell->is_locally_owned())
+          for (const unsigned int f : cell->face_indices())
+            if (cell->at_boundary(f) && cell->face(f)->boundary_id() == id)
+              {
+                face_values.reinit(cell, f);
+                for (const unsigned int q :
+                     face_values.quadrature_point_indices())
+                  visit(face_values.normal_vector(q), face_values.JxW(q));
+              }
+    }
+  } // namespace
+
+
+
+  template <int dim>
+  PieceNormal<dim>
+  piece_normal(const parallel::distributed::Triangulation<dim> &triangulation,
+               const types::boundary_id                         id)
+  {
+    const MPI_Comm comm            = triangulation.get_communicator();
+    const auto     for_each_normal = [&](const auto &visit) {
+      visit_normals(triangulation, id, visit);
+    };
+
+    Tensor<1, dim> sum;
+    double         area = 0.;
+    for_each_normal([&](const Tensor<1, dim> &normal, const double JxW) {
+      sum += normal * JxW;
+      area += JxW;
+    });
+    sum  = Utilities::MPI::sum(sum, comm);
+    area = Utilities::MPI::sum(area, comm);
+    // All around a body the normals cancel.
+    if (sum.norm() <= 1e-10 * area)
+      return {Tensor<1, dim>(), 180.};
+
+    PieceNormal<dim> result{sum / sum.norm(), 0.};
+    // Exact axes keep the nodal frames of axis-parallel bodies trivial.
+    for (unsigned int d = 0; d < dim; ++d)
+      if (std::abs(std::abs(result.normal[d]) - 1.) < 1e-12)
+        {
+          const double sign = result.normal[d] > 0. ? 1. : -1.;
+          result.normal     = 0.;
+          result.normal[d]  = sign;
+        }
+    // By the chord, since an arc cosine knows no angles below 1e-8.
+    double chord = 0.;
+    for_each_normal([&](const Tensor<1, dim> &normal, const double) {
+      chord = std::max(chord, (normal - result.normal).norm());
+    });
+    chord = Utilities::MPI::max(chord, comm);
+    result.deviation =
+      2. * std::asin(std::min(1., chord / 2.)) * 180. / numbers::PI;
+    return result;
+  }
+
+
+
+  template <int dim>
+  double
+  largest_angle(const parallel::distributed::Triangulation<dim> &triangulation,
+                const types::boundary_id                         id)
+  {
+    // Ghosts are all cells around a vertex of an owned one.
+    std::map<unsigned int, std::vector<Tensor<1, dim>>> normals;
+    double                                              chord = 0.;
+    for (const auto &cell : triangulation.active_cell_iterators())
+      if (!cell->is_artificial())
+        for (const unsigned int f : cell->face_indices())
+          if (cell->at_boundary(f) && cell->face(f)->boundary_id() == id)
+            {
+              const auto           face = cell->face(f);
+              const Tensor<1, dim> a =
+                face->vertex(face->n_vertices() - 1) - face->vertex(0);
+              Tensor<1, dim> normal;
+              if constexpr (dim == 2)
+                normal = cross_product_2d(a);
+              else
+                normal = cross_product_3d(a, face->vertex(2) - face->vertex(1));
+              normal /= normal.norm();
+              if (normal * (face->center() - cell->center()) < 0.)
+                normal *= -1.;
+              for (const unsigned int v : face->vertex_indices())
+                {
+                  auto &others = normals[face->vertex_index(v)];
+                  for (const Tensor<1, dim> &other : others)
+                    chord = std::max(chord, (normal - other).norm());
+                  others.push_back(normal);
+                }
+            }
+    chord = Utilities::MPI::max(chord, triangulation.get_communicator());
+    return 2. * std::asin(std::min(1., chord / 2.)) * 180. / numbers::PI;
+  }
+
+
+
+  template <int dim>
+  bool
+  faces_towards(const parallel::distributed::Triangulation<dim> &triangulation,
+                const types::boundary_id                         id,
+                const Tensor<1, dim>                            &direction)
+  {
+    bool here = false;
+    visit_normals(triangulation,
+                  id,
+                  [&](const Tensor<1, dim> &normal, const double) {
+                    here |= normal * direction > 1e-6;
+                  });
+    return Utilities::MPI::max(here ? 1 : 0,
+                               triangulation.get_communicator()) == 1;
+  }
+
+
+
   VISCOPLASTIC_INSTANTIATE(set_ids);
   VISCOPLASTIC_INSTANTIATE(boundary_ids);
+  VISCOPLASTIC_INSTANTIATE(touching_boundaries);
   VISCOPLASTIC_INSTANTIATE(material_ids);
+  VISCOPLASTIC_INSTANTIATE(piece_normal);
+  VISCOPLASTIC_INSTANTIATE(largest_angle);
+  VISCOPLASTIC_INSTANTIATE(faces_towards);
 } // namespace Viscoplastic

@@ -3,7 +3,6 @@
 #include <deal.II/grid/grid_tools.h>
 
 #include <viscoplastic_contact/base/messages.h>
-#include <viscoplastic_contact/base/spelling.h>
 #include <viscoplastic_contact/base/types.h>
 #include <viscoplastic_contact/mesh/mesh_ids.h>
 #include <viscoplastic_contact/mesh/mesh_refinement.h>

@@ -2,7 +2,7 @@
 #include <deal.II/base/numbers.h>
 #include <deal.II/base/utilities.h>
 
-#include <viscoplastic_contact/base/spelling.h>
+#include <viscoplastic_contact/base/messages.h>
 #include <viscoplastic_contact/parameters/dimension_check.h>
 
 #include <cctype>

@@ -2,7 +2,6 @@
 #include <deal.II/base/patterns.h>
 
 #include <viscoplastic_contact/base/messages.h>
-#include <viscoplastic_contact/base/spelling.h>
 #include <viscoplastic_contact/laws/law_library.h>
 #include <viscoplastic_contact/parameters/parameter_file.h>
 #include <viscoplastic_contact/parameters/parameter_text.h>
@@ -287,15 +286,6 @@ namespace Viscoplastic
     AssertThrow(solver.contact_tolerance == 0. ||
                   solver.contact_tolerance >= 1e-14,
                 ExcMessage(message.str()));
-  }
-
-
-
-  std::string
-  Parameters::origin_of(const std::string &path) const
-  {
-    const auto origin = origins.find(path);
-    return origin == origins.end() ? "" : origin->second;
   }
 
 

@@ -3,7 +3,7 @@
 #include <deal.II/base/patterns.h>
 #include <deal.II/base/utilities.h>
 
-#include <viscoplastic_contact/base/spelling.h>
+#include <viscoplastic_contact/base/messages.h>
 #include <viscoplastic_contact/base/types.h>
 #include <viscoplastic_contact/parameters/parameter_text.h>
 
@@ -257,15 +257,6 @@ namespace Viscoplastic
       }
     };
   } // namespace
-
-
-
-  std::string
-  ParameterLine::origin() const
-  {
-    return number == 0 ? source :
-                         "'" + source + "', line " + std::to_string(number);
-  }
 
 
 

@@ -163,11 +163,6 @@ namespace Viscoplastic
                       "of a step stop when the bound on their error is this "
                       "fraction of the estimated discretization error.",
                       Patterns::Double(1e-6, 0.5));
-    prm.add_parameter("Two-level comparison",
-                      two_level_comparison,
-                      "Run the scene also with twice the mesh width and twice "
-                      "the time steps, and give each quantity of interest "
-                      "with the uncertainty that follows.");
   }
 
 

@@ -2,7 +2,6 @@
 #include <deal.II/base/utilities.h>
 
 #include <viscoplastic_contact/base/messages.h>
-#include <viscoplastic_contact/base/spelling.h>
 #include <viscoplastic_contact/parameters/dimension_check.h>
 #include <viscoplastic_contact/parameters/parameter_tree.h>
 #include <viscoplastic_contact/parameters/quantities.h>

@@ -2,8 +2,8 @@
 #include <deal.II/base/exceptions.h>
 #include <deal.II/base/utilities.h>
 
+#include <viscoplastic_contact/base/messages.h>
 #include <viscoplastic_contact/base/number_range.h>
-#include <viscoplastic_contact/base/spelling.h>
 #include <viscoplastic_contact/parameters/time_schedule.h>
 
 #include <algorithm>
@@ -98,17 +98,6 @@ namespace Viscoplastic
 
 
 
-  unsigned int
-  TimeSchedule::n_steps() const
-  {
-    unsigned int n = 0;
-    for (const Phase &phase : phases)
-      n += phase.n_steps;
-    return n;
-  }
-
-
-
   TimeStep
   TimeSchedule::step(const unsigned int n) const
   {
@@ -119,17 +108,6 @@ namespace Viscoplastic
       i -= p->n_steps;
     const double t_old = step_end(*p, i - 1), t = step_end(*p, i);
     return {n, t_old, t, t - t_old};
-  }
-
-
-
-  unsigned int
-  TimeSchedule::phase_ending_at(const double t) const
-  {
-    for (unsigned int i = 0; i < phases.size(); ++i)
-      if (phases[i].end == t)
-        return i + 1;
-    return 0;
   }
 
 
@@ -180,13 +158,6 @@ namespace Viscoplastic
 
 
 
-  namespace
-  {
-    constexpr double most_steps = 1e8;
-  }
-
-
-
   std::vector<StepsUntil>
   read_phases(const std::string &text)
   {
@@ -203,17 +174,6 @@ namespace Viscoplastic
 
 
 
-  std::vector<StepsUntil>
-  scale_phases(std::vector<StepsUntil> phases, const double factor)
-  {
-    for (StepsUntil &phase : phases)
-      phase.n_steps = static_cast<unsigned int>(std::clamp(
-        std::ceil(factor * phase.n_steps * (1. - 1e-12)), 1., most_steps));
-    return phases;
-  }
-
-
-
   std::string
   write_phases(const std::vector<StepsUntil> &phases)
   {
@@ -222,16 +182,5 @@ namespace Viscoplastic
       text += (text.empty() ? "" : ", ") + phase.end + ": " +
               std::to_string(phase.n_steps);
     return text;
-  }
-
-
-
-  unsigned int
-  n_steps(const std::vector<StepsUntil> &phases)
-  {
-    unsigned int n = 0;
-    for (const StepsUntil &phase : phases)
-      n += phase.n_steps;
-    return n;
   }
 } // namespace Viscoplastic

@@ -3,7 +3,6 @@
 #include <deal.II/base/utilities.h>
 
 #include <viscoplastic_contact/base/messages.h>
-#include <viscoplastic_contact/base/spelling.h>
 #include <viscoplastic_contact/parameters/parameter_text.h>
 #include <viscoplastic_contact/parameters/parameter_tree.h>
 #include <viscoplastic_contact/parameters/wrong_lines.h>

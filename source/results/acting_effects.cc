@@ -6,6 +6,48 @@
 
 namespace Viscoplastic
 {
+  namespace
+  {
+    /// Add sentences on data of boundaries that have done nothing.
+    template <int dim>
+    void
+    add_idle_data(const Scene<dim>                   &scene,
+                  const std::set<types::boundary_id> &loads,
+                  const bool                          foundation_has_moved,
+                  std::vector<std::string>           &result)
+    {
+      for (const auto &[id, condition] : scene.boundary)
+        {
+          const std::string section = "Boundary " + std::to_string(id);
+          std::string       entries;
+          for (const auto &[name, is_given] :
+               {std::make_pair("Traction", condition.traction.has_value()),
+                std::make_pair("Pressure", condition.pressure.has_value()),
+                std::make_pair("Normal stress",
+                               condition.normal_stress.has_value())})
+            if (is_given)
+              entries +=
+                (entries.empty() ? "'" : " and '") + section + '/' + name + "'";
+          if (!entries.empty() && loads.count(id) == 0)
+            result.push_back("the load on " + scene.names.of("boundary", id) +
+                             " has never acted: what " + entries +
+                             " gives has been zero at all times wherever "
+                             "displacements are free, and " +
+                             (condition.role == BoundaryRole::displacement ||
+                                  condition.has_springs() ?
+                                "can go." :
+                                "'Role' = free gives the same for less."));
+          if (scene.has_friction() && !foundation_has_moved &&
+              condition.has_friction() && condition.foundation_motion)
+            result.push_back("the motion of the foundation has never acted: no "
+                             "foundation has moved, and '" +
+                             section + "/Foundation motion' can go.");
+        }
+    }
+  } // namespace
+
+
+
   template <int dim>
   void
   ActingEffects<dim>::note(const Discretization<dim> &discretization,
@@ -90,12 +132,9 @@ namespace Viscoplastic
         text << std::setprecision(3)
              << "friction has never acted: nothing has slipped, and at most "
              << 100. * run.utilization.value << " % of a bound was needed";
-        if (std::any_of(scene.boundary.begin(),
-                        scene.boundary.end(),
-                        [](const auto &pair) {
-                          return pair.second.has_friction() &&
-                                 !pair.second.is_unilateral();
-                        }))
+        if (scene.on_any_boundary([](const auto &b) {
+              return b.has_friction() && !b.is_unilateral();
+            }))
           text << "; on bilateral contact 'Friction law' = glued gives the "
                   "same for less";
         text << '.';
@@ -130,33 +169,7 @@ namespace Viscoplastic
                        "touched the foundation at all times, and 'Contact law' "
                        "= bilateral with the gap as 'Foundation displacement' "
                        "gives the same for less.");
-    for (const auto &[id, condition] : scene.boundary)
-      {
-        const std::string section = "Boundary " + std::to_string(id);
-        std::string       entries;
-        for (const auto &[name, is_given] :
-             {std::make_pair("Traction", condition.traction.has_value()),
-              std::make_pair("Pressure", condition.pressure.has_value()),
-              std::make_pair("Normal stress",
-                             condition.normal_stress.has_value())})
-          if (is_given)
-            entries +=
-              (entries.empty() ? "'" : " and '") + section + '/' + name + "'";
-        if (!entries.empty() && loads.count(id) == 0)
-          result.push_back("the load on " + scene.names.of("boundary", id) +
-                           " has never acted: what " + entries +
-                           " gives has been zero at all times wherever "
-                           "displacements are free, and " +
-                           (condition.role == BoundaryRole::displacement ||
-                                condition.has_springs() ?
-                              "can go." :
-                              "'Role' = free gives the same for less."));
-        if (scene.has_friction() && !foundation_has_moved &&
-            condition.has_friction() && condition.foundation_motion)
-          result.push_back("the motion of the foundation has never acted: no "
-                           "foundation has moved, and '" +
-                           section + "/Foundation motion' can go.");
-      }
+    add_idle_data(scene, loads, foundation_has_moved, result);
     if (scene.body_force && loads.count(body_force_id) == 0)
       result.push_back("the body force has never acted: 'Loads/Body force' has "
                        "been zero everywhere and at all times, and can go.");

@@ -181,28 +181,6 @@ namespace Viscoplastic
 
 
   template <int dim>
-  std::string
-  BoundaryFields<dim>::name(const RecordedField field)
-  {
-    std::string name = name_of(field);
-    std::replace(name.begin(), name.end(), ' ', '_');
-    return name;
-  }
-
-
-
-  template <int dim>
-  bool
-  BoundaryFields<dim>::is_vector(const RecordedField field)
-  {
-    return field == RecordedField::slip || field == RecordedField::slip_rate ||
-           field == RecordedField::traction ||
-           field == RecordedField::stress_vector;
-  }
-
-
-
-  template <int dim>
   std::vector<std::string>
   BoundaryFields<dim>::names(const std::set<RecordedField> &fields)
   {

@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <deal.II/base/quadrature_lib.h>
+
+#include <viscoplastic_contact/discretization/energy.h>
 #include <viscoplastic_contact/results/field_probes.h>
 
 namespace Viscoplastic
@@ -112,6 +115,190 @@ namespace Viscoplastic
 
 
 
+  template <int dim>
+  FieldIntegrals<dim>::FieldIntegrals(const Discretization<dim> &discretization)
+    : discretization(discretization)
+  {
+    for (const OutputIntegral &integral :
+         discretization.scene().output_integrals)
+      {
+        const bool is_boundary =
+          integral.domain == OutputIntegral::Domain::boundary;
+        pieces.push_back(is_boundary ? pieces_of_faces(integral) :
+                                       pieces_of_cells(integral));
+        all_names.push_back((is_boundary ? "area_" : "volume_") +
+                            integral.name());
+        for (const auto &names : {BodyFields<dim>::names(integral.fields),
+                                  BoundaryFields<dim>::names(integral.fields)})
+          for (const std::string &name : names)
+            all_names.push_back("integral_" + integral.name() + "_" + name);
+        is_dissipation.resize(all_names.size(), false);
+        if (!integral.energies)
+          continue;
+        for (const char *name : {"stored_energy_", "viscous_dissipation_"})
+          all_names.push_back(name + integral.name());
+        is_dissipation.push_back(false);
+        is_dissipation.push_back(true);
+        const StressSpace<dim> &space = discretization.stress_space;
+        if (!points)
+          points = std::make_unique<const StressSpace<dim>>(
+            space.space,
+            space.moduli,
+            /* at_quadrature_points = */ true,
+            space.mean_dilatation);
+      }
+  }
+
+
+
+  template <int dim>
+  std::vector<typename FieldIntegrals<dim>::Piece>
+  FieldIntegrals<dim>::pieces_of_cells(const OutputIntegral &integral) const
+  {
+    const AdmissibleSpace<dim> &space = discretization.space;
+    std::vector<Piece>          result;
+    FEValues<dim>               fe_values(space.mapping,
+                            space.dof_handler.get_fe(),
+                            QGauss<dim>(2),
+                            update_values | update_JxW_values);
+    for (std::size_t c = 0; c < space.cells.size(); ++c)
+      {
+        const types::material_id id = space.cells[c]->material_id();
+        if (!space.scene.is_present(id) ||
+            (integral.domain == OutputIntegral::Domain::material &&
+             id != integral.id))
+          continue;
+        fe_values.reinit(space.cells[c]);
+        Piece piece{c, numbers::invalid_unsigned_int, {}, {}};
+        for (const unsigned int q : fe_values.quadrature_point_indices())
+          for (unsigned int v = 0; v < piece.weights.size(); ++v)
+            piece.weights[v] +=
+              fe_values.shape_value(v * dim, q) * fe_values.JxW(q);
+        result.push_back(piece);
+      }
+    return result;
+  }
+
+
+
+  template <int dim>
+  std::vector<typename FieldIntegrals<dim>::Piece>
+  FieldIntegrals<dim>::pieces_of_faces(const OutputIntegral &integral) const
+  {
+    const AdmissibleSpace<dim> &space = discretization.space;
+    std::vector<Piece>          result;
+    FEFaceValues<dim>           fe_values(space.mapping,
+                                space.dof_handler.get_fe(),
+                                QGauss<dim - 1>(2),
+                                update_values | update_JxW_values |
+                                  update_normal_vectors);
+    for (std::size_t c = 0; c < space.cells.size(); ++c)
+      for (const unsigned int f : space.cells[c]->face_indices())
+        {
+          const auto face = space.cells[c]->face(f);
+          if (!face->at_boundary() || face->boundary_id() != integral.id ||
+              !space.scene.is_present(space.cells[c]->material_id()))
+            continue;
+          fe_values.reinit(space.cells[c], f);
+          Piece  piece{c, f, {}, {}};
+          double area = 0.;
+          for (const unsigned int q : fe_values.quadrature_point_indices())
+            {
+              for (unsigned int v = 0; v < piece.weights.size(); ++v)
+                piece.weights[v] +=
+                  fe_values.shape_value(v * dim, q) * fe_values.JxW(q);
+              piece.normal += fe_values.normal_vector(q) * fe_values.JxW(q);
+              area += fe_values.JxW(q);
+            }
+          // On the axis of a ring there is none.
+          if (area > 0.)
+            piece.normal /= area;
+          result.push_back(piece);
+        }
+    return result;
+  }
+
+
+
+  template <int dim>
+  std::array<double, 2>
+  FieldIntegrals<dim>::energies(const std::vector<Piece> &cells,
+                                const State<dim>         &old,
+                                const State<dim>         &state) const
+  {
+    // 1/2 int E^-1 sigma : sigma with sigma = E eps(u) + z.
+    const StressSpace<dim> &samples = discretization.stress_space;
+    const FlowLaws<dim>    &laws    = discretization.laws;
+    const auto              before  = laws.at(old.t, old.history),
+               now                  = laws.at(state.t, state.history);
+    std::vector<SymmetricTensor<2, 3>> strain(points->n_samples);
+    std::array<double, 2>              result{{0., 0.}};
+    for (const Piece &piece : cells)
+      {
+        const std::size_t c = piece.cell;
+        points->strains(c, state.u.begin(), strain.data());
+        for (unsigned int s = 0; s < points->n_samples; ++s)
+          result[0] += 0.5 * points->weight(c, s) *
+                       (points->moduli(c).stress(strain[s]) * strain[s]);
+        if (!state.z.empty())
+          {
+            samples.strains(c, state.u.begin(), strain.data());
+            for (unsigned int s = 0; s < samples.n_samples; ++s)
+              result[0] += samples.weight(c, s) *
+                           (state.z[c * samples.n_samples + s] * strain[s]);
+          }
+        const CellEnergies energies =
+          energies_of_cell(laws, before, now, old, state, c);
+        result[0] += energies.irreversible_energy;
+        result[1] += energies.viscous_dissipation;
+      }
+    return result;
+  }
+
+
+
+  template <int dim>
+  std::vector<double>
+  FieldIntegrals<dim>::values(const State<dim> &old,
+                              const State<dim> &state) const
+  {
+    std::vector<double> result(all_names.size(), 0.);
+    double             *sums = result.data();
+    for (std::size_t i = 0; i < pieces.size(); ++i)
+      {
+        const OutputIntegral &integral =
+          discretization.scene().output_integrals[i];
+        const std::set<RecordedField> &fields = integral.fields;
+        const BodyFields<dim>          body(discretization.laws, state, fields);
+        const BoundaryFields<dim>      boundary(discretization.stress_space,
+                                           state,
+                                           discretization.face.get(),
+                                           fields);
+        const std::size_t n_body = BodyFields<dim>::names(fields).size();
+        for (const Piece &piece : pieces[i])
+          {
+            for (const double weight : piece.weights)
+              sums[0] += weight;
+            body.add(piece.cell, piece.weights, sums + 1);
+            boundary.add(piece.cell,
+                         piece.face,
+                         piece.weights,
+                         piece.normal,
+                         sums + 1 + n_body);
+          }
+        sums += 1 + n_body + BoundaryFields<dim>::names(fields).size();
+        if (integral.energies)
+          for (const double energy : energies(pieces[i], old, state))
+            *sums++ = energy;
+      }
+    Utilities::MPI::sum(result, discretization.space.communicator, result);
+    return result;
+  }
+
+
+
   template class FieldProbes<2>;
   template class FieldProbes<3>;
+  template class FieldIntegrals<2>;
+  template class FieldIntegrals<3>;
 } // namespace Viscoplastic

@@ -83,16 +83,6 @@ namespace Viscoplastic
 
   template <int dim>
   void
-  LineOutput<dim>::set_mesh(const Discretization<dim> &on_mesh)
-  {
-    discretization = &on_mesh;
-    probes.clear();
-  }
-
-
-
-  template <int dim>
-  void
   LineOutput<dim>::name_files(const std::string &directory)
   {
     names.clear();

@@ -3,7 +3,6 @@
 #include <viscoplastic_contact/base/files.h>
 #include <viscoplastic_contact/base/messages.h>
 #include <viscoplastic_contact/base/number_range.h>
-#include <viscoplastic_contact/base/spelling.h>
 #include <viscoplastic_contact/error/solution_errors.h>
 #include <viscoplastic_contact/error/space_estimator.h>
 #include <viscoplastic_contact/results/boundary_fields.h>
@@ -242,16 +241,6 @@ namespace Viscoplastic
           // No further thread is allowed here.
         }
     fail_together(communicator, write_all);
-  }
-
-
-
-  template <int dim>
-  void
-  Output<dim>::finish()
-  {
-    if (writing.valid())
-      writing.get();
   }
 
 

@@ -3,7 +3,7 @@
 #include <viscoplastic_contact/discretization/initial_state.h>
 #include <viscoplastic_contact/error/kelly_estimator.h>
 #include <viscoplastic_contact/results/recorder.h>
-#include <viscoplastic_contact/results/run_phases.h>
+#include <viscoplastic_contact/results/run_summary.h>
 
 #include <iomanip>
 
@@ -111,7 +111,7 @@ namespace Viscoplastic
     const StatisticsRow recorded = row(step, quantities, errors);
     run.at_end.clear();
     for (const StatisticsRow::Entry &entry : recorded.entries)
-      if (entry.at_end != StatisticsRow::AtEnd::absent)
+      if (entry.is_printed)
         run.at_end.push_back(entry);
     if (statistics)
       statistics->write(recorded);
@@ -285,18 +285,6 @@ namespace Viscoplastic
 
 
   template <int dim>
-  std::map<std::string, double>
-  Recorder<dim>::seconds() const
-  {
-    auto result = timer.get_summary_data(TimerOutput::total_wall_time);
-    if (pilot_seconds > 0.)
-      result["pilot run"] += pilot_seconds;
-    return result;
-  }
-
-
-
-  template <int dim>
   void
   Recorder<dim>::check_sizes(const bool at_end) const
   {
@@ -317,10 +305,10 @@ namespace Viscoplastic
 
   template <int dim>
   void
-  Recorder<dim>::print(std::ostream &out, const RunSummary<dim> *coarser) const
+  Recorder<dim>::print(std::ostream &out) const
   {
     out << '\n';
-    run.print(out, scene.parameters.units, scene.names, coarser);
+    run.print(out, scene.parameters.units, scene.names);
     const double n = run.n_steps;
     out << std::setprecision(3) << "Iterations per step: ";
     if (newton_iterations > 0)

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <viscoplastic_contact/base/instantiate_member.h>
 #include <viscoplastic_contact/base/messages.h>
+#include <viscoplastic_contact/base/types.h>
 #include <viscoplastic_contact/discretization/initial_state.h>
 #include <viscoplastic_contact/error/memory_bound.h>
 #include <viscoplastic_contact/mesh/mesh_size.h>
@@ -16,6 +16,94 @@
 
 namespace Viscoplastic
 {
+  namespace
+  {
+    /// What rounding has lost of a step, as the reason of its failure; empty if
+    /// that is little.
+    template <int dim>
+    std::string
+    loss_by_rounding(const Discretization<dim> &discretization,
+                     const AcceptedStep<dim>   &step,
+                     const StepQuantities<dim> &quantities,
+                     const double               largest_force)
+    {
+      constexpr double lost = 1e-3, far = 1e3;
+      const double     times =
+        quantities.max_displacement /
+        body_diagonal(discretization.space.dof_handler.get_triangulation());
+      std::string loss;
+      // Loads that are not rounding, of which rounding loses a part.
+      if (const double missing = stable_norm(quantities.sum_of_forces);
+          missing > lost * std::max(largest_force, quantities.load_size) &&
+          missing < quantities.load_size &&
+          missing <= quantities.rounding_of_forces)
+        loss = "forces miss the loads by " +
+               number(missing / quantities.load_size, 6) + " of them";
+      else if (quantities.load_size > 0. && times > far &&
+               step.report.relative_error > lost)
+        loss = "the error is " + number(step.report.relative_error, 6) +
+               " of the solution";
+      if (loss.empty())
+        return loss;
+      loss += ", which is rounding of displacements";
+      if (times > far)
+        loss += " of " + number(times, 6) + " times the size of the body: " +
+                (discretization.space.is_held_by_contact() ?
+                   "contact hardly holds it, or not at all. Let the loads "
+                   "press the body onto its foundation, or prescribe "
+                   "displacements that hold it." :
+                   "it flows without end, or gives way far too easily. Look "
+                   "at the units of its material and its loads.");
+      else
+        loss += " where the body is stiffest: materials whose stiffness "
+                "differs by less, or prescribed displacements where it is "
+                "stiff, mend that.";
+      return loss;
+    }
+
+
+
+    /// What small strains, which are assumed, leave of the results; empty where
+    /// that is enough.
+    template <int dim>
+    std::string
+    remark_on_strain(const Scene<dim>      &scene,
+                     const RunSummary<dim> &run,
+                     const double           size)
+    {
+      const bool is_far = run.displacement.value > size;
+      // Scenes without units are mathematics, where sizes mean nothing.
+      if (!is_far && !(run.strain.value >
+                       (scene.parameters.units.are_declared() ? 0.1 : 1.)))
+        return "";
+      std::ostringstream text;
+      text << std::setprecision(3)
+           << "Note: at t = " << (is_far ? run.displacement.t : run.strain.t)
+           << scene.unit(Quantity::time);
+      if (is_far)
+        text << " the largest displacement is " << run.displacement.value / size
+             << " times the size of the body";
+      else
+        text << " the norm of the strain is " << run.strain.value
+             << " in the mean of what is deformed";
+      if (run.strain.value > 1. && run.displacement.value < 0.05 * size)
+        text << ", although displacements are small: a point alone carries "
+                "force, as where a symmetry ends, and strains there grow as "
+                "cells become smaller (the stress is largest at x = ("
+             << run.von_mises_position << ")).";
+      else
+        text << "; small strains are assumed, so that "
+             << (is_far || run.strain.value > 1. ?
+                   "this is flow without end or a load far too large, and "
+                   "only its onset means something." :
+                   "results may be wrong by about that, relatively, which no "
+                   "error bar has.");
+      return text.str();
+    }
+  } // namespace
+
+
+
   template <int dim>
   void
   Recorder<dim>::judge(const AcceptedStep<dim>   &step,
@@ -26,39 +114,10 @@ namespace Viscoplastic
     const double      defect = balance_defect(quantities);
     const std::string when =
       "at t = " + number(step.time_step.t, 6) + scene.unit(Quantity::time);
-    constexpr double lost = 1e-3, far = 1e3;
-    const double     times =
-      quantities.max_displacement /
-      body_diagonal(discretization->space.dof_handler.get_triangulation());
-    std::string loss;
-    // Loads that are not rounding, of which rounding loses a part.
-    if (const double missing = stable_norm(quantities.sum_of_forces);
-        missing > lost * std::max(largest_force, quantities.load_size) &&
-        missing < quantities.load_size &&
-        missing <= quantities.rounding_of_forces)
-      loss = "forces miss the loads by " +
-             number(missing / quantities.load_size, 6) + " of them";
-    else if (quantities.load_size > 0. && times > far &&
-             step.report.relative_error > lost)
-      loss = "the error is " + number(step.report.relative_error, 6) +
-             " of the solution";
-    if (!loss.empty())
-      {
-        loss += ", which is rounding of displacements";
-        if (times > far)
-          loss += " of " + number(times, 6) + " times the size of the body: " +
-                  (discretization->space.is_held_by_contact() ?
-                     "contact hardly holds it, or not at all. Let the loads "
-                     "press the body onto its foundation, or prescribe "
-                     "displacements that hold it." :
-                     "it flows without end, or gives way far too easily. Look "
-                     "at the units of its material and its loads.");
-        else
-          loss += " where the body is stiffest: materials whose stiffness "
-                  "differs by less, or prescribed displacements where it is "
-                  "stiff, mend that.";
-        throw StepFailure(step.time_step.n, step.time_step.t, loss);
-      }
+    if (const std::string loss =
+          loss_by_rounding(*discretization, step, quantities, largest_force);
+        !loss.empty())
+      throw StepFailure(step.time_step.n, step.time_step.t, loss);
     // Beside stresses that balance each other the forces may be nothing.
     const bool is_beside_stresses =
       quantities.largest_force * quantities.max_displacement <
@@ -295,38 +354,12 @@ namespace Viscoplastic
                        "not to be trusted. Begin with a finer mesh ('Geometry/"
                        "Global refinements').");
 
-    const double size =
-      body_diagonal(discretization->space.dof_handler.get_triangulation());
-    const bool is_far = run.displacement.value > size;
-    // Scenes without units are mathematics, where sizes mean nothing.
-    if (is_far ||
-        run.strain.value > (scene.parameters.units.are_declared() ? 0.1 : 1.))
-      {
-        std::ostringstream text;
-        text << std::setprecision(3)
-             << "Note: at t = " << (is_far ? run.displacement.t : run.strain.t)
-             << scene.unit(Quantity::time);
-        if (is_far)
-          text << " the largest displacement is "
-               << run.displacement.value / size
-               << " times the size of the body";
-        else
-          text << " the norm of the strain is " << run.strain.value
-               << " in the mean of what is deformed";
-        if (run.strain.value > 1. && run.displacement.value < 0.05 * size)
-          text << ", although displacements are small: a point alone carries "
-                  "force, as where a symmetry ends, and strains there grow as "
-                  "cells become smaller (the stress is largest at x = ("
-               << run.von_mises_position << ")).";
-        else
-          text << "; small strains are assumed, so that "
-               << (is_far || run.strain.value > 1. ?
-                     "this is flow without end or a load far too large, and "
-                     "only its onset means something." :
-                     "results may be wrong by about that, relatively, which no "
-                     "error bar has.");
-        result.push_back(text.str());
-      }
+    const std::string on_strain = remark_on_strain(
+      scene,
+      run,
+      body_diagonal(discretization->space.dof_handler.get_triangulation()));
+    if (!on_strain.empty())
+      result.push_back(on_strain);
     return result;
   }
 

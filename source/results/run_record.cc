@@ -161,8 +161,7 @@ namespace Viscoplastic
       {"dealii_version", DEAL_II_PACKAGE_VERSION},
       {"n_mpi_ranks", n_ranks},
       {"dimension", dim},
-      {"effects", scene.effects()},
-      {"changed_defaults", scene.changed_defaults()}};
+      {"effects", scene.effects()}};
     const Units &units = scene.parameters.units;
     if (units.are_declared())
       record["units"] = {{"length", units.length.name},

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <viscoplastic_contact/base/files.h>
 #include <viscoplastic_contact/base/messages.h>
 #include <viscoplastic_contact/base/types.h>
-#include <viscoplastic_contact/results/run_phases.h>
 #include <viscoplastic_contact/results/run_summary.h>
 
 #include <iomanip>
@@ -51,31 +49,17 @@ namespace Viscoplastic
     print_end(std::ostream          &out,
               const Units           &units,
               const PlaceNames      &names,
-              const RunSummary<dim> &run,
-              const RunSummary<dim> *coarser)
+              const RunSummary<dim> &run)
     {
-      out << "At t = " << WithUnits<dim>{units}.time(run.t)
-          << (!coarser      ? ":\n" :
-              run.tolerance ? " (+- what twice the tolerance changes):\n" :
-                              " (+- what twice the mesh width and the time "
-                              "steps change):\n");
-      for (std::size_t e = 0; e < run.at_end.size(); ++e)
+      out << "At t = " << WithUnits<dim>{units}.time(run.t) << ":\n";
+      for (const StatisticsRow::Entry &entry : run.at_end)
         {
-          const StatisticsRow::Entry &entry = run.at_end[e];
-          if (!coarser && entry.at_end == StatisticsRow::AtEnd::compared)
-            continue;
           // New meshes may all have been those of passes before.
           if (entry.name == "adaptation_energy" && entry.values[0] == 0.)
             continue;
           std::ostringstream text;
           for (std::size_t i = 0; i < entry.values.size(); ++i)
-            {
-              text << (i > 0 ? "; " : "") << number(entry.values[i]);
-              if (coarser)
-                text << " +- " << std::setprecision(2)
-                     << std::abs(entry.values[i] -
-                                 coarser->at_end[e].values[i]);
-            }
+            text << (i > 0 ? "; " : "") << number(entry.values[i]);
           print_row(out,
                     names.words(entry.name),
                     text.str() + units.suffix(entry.quantity, dim));
@@ -273,48 +257,12 @@ namespace Viscoplastic
   void
   RunSummary<dim>::print(std::ostream     &out,
                          const Units      &units,
-                         const PlaceNames &names,
-                         const RunSummary *coarser) const
+                         const PlaceNames &names) const
   {
-    print_end(out, units, names, *this, coarser);
+    print_end(out, units, names, *this);
     print_largest(out, units, *this);
     print_steps(out, *this);
     print_errors(out, units, names, *this);
-  }
-
-
-
-  template <int dim>
-  void
-  write_uncertainties(const std::string     &file,
-                      const Units           &units,
-                      const RunSummary<dim> &summary,
-                      const RunSummary<dim> &coarser)
-  {
-    std::ostringstream out;
-    out << std::setprecision(12) << "quantity,value,uncertainty\n";
-    AssertDimension(summary.at_end.size(), coarser.at_end.size());
-    for (std::size_t e = 0; e < summary.at_end.size(); ++e)
-      {
-        const StatisticsRow::Entry &entry = summary.at_end[e];
-        for (std::size_t i = 0; i < entry.values.size(); ++i)
-          out << entry.column(i) << units.label(entry.quantity, dim) << ','
-              << entry.values[i] << ','
-              << std::abs(entry.values[i] - coarser.at_end[e].values[i])
-              << '\n';
-      }
-    replace_file(file, out.str());
-  }
-
-
-
-  double
-  RunBill::friction() const
-  {
-    const auto contact = seconds.find("contact");
-    if (!plain_solves || !(solves > 0.) || contact == seconds.end())
-      return 0.;
-    return contact->second * (1. - *plain_solves / solves);
   }
 
 
@@ -373,5 +321,4 @@ namespace Viscoplastic
 
   template struct RunSummary<2>;
   template struct RunSummary<3>;
-  VISCOPLASTIC_INSTANTIATE(write_uncertainties);
 } // namespace Viscoplastic

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <viscoplastic_contact/base/instantiate_member.h>
+#include <viscoplastic_contact/base/types.h>
 #include <viscoplastic_contact/results/recorder.h>
-#include <viscoplastic_contact/results/run_phases.h>
+#include <viscoplastic_contact/results/run_summary.h>
 #include <viscoplastic_contact/results/unit_labels.h>
 
 // What a run records of each step; doc/results.md tells what it means.
@@ -77,15 +77,6 @@ namespace Viscoplastic
 
 
 
-    StatisticsRow::AtEnd
-    printed_if(const bool condition)
-    {
-      return condition ? StatisticsRow::AtEnd::printed :
-                         StatisticsRow::AtEnd::absent;
-    }
-
-
-
     /// What contact and friction of the step are like.
     template <int dim>
     void
@@ -95,30 +86,27 @@ namespace Viscoplastic
                 const StepQuantities<dim> &quantities,
                 StatisticsRow             &row)
     {
-      using AtEnd                        = StatisticsRow::AtEnd;
-      const FrictionIdentities &friction = quantities.friction;
-      const auto                add_force =
-        [&row](const std::string &name, const auto &force, const AtEnd at_end) {
-          row.add_vector(name, force, dim, Quantity::force, at_end);
-        };
+      const FrictionIdentities &friction  = quantities.friction;
+      const auto                add_force = [&row](const std::string &name,
+                                    const auto        &force,
+                                    const bool         is_printed) {
+        row.add_vector(name, force, dim, Quantity::force, is_printed);
+      };
       row.add("duality_gap", step.report.duality_gap, Quantity::energy);
       row.add("algebraic_error", step.report.relative_error);
       row.add("stick_area", friction.stick_area, Quantity::area);
-      row.add("slip_area",
-              friction.slip_area,
-              Quantity::area,
-              scene.has_friction() ? AtEnd::compared : AtEnd::absent);
+      row.add("slip_area", friction.slip_area, Quantity::area);
       add_force("friction_force",
                 quantities.friction_force,
-                printed_if(scene.has_friction()));
+                scene.has_friction());
       if (face.has_obstacles())
         {
           const NormalContact<dim> &contact = quantities.contact;
-          add_force("contact_force", contact.force, AtEnd::printed);
+          add_force("contact_force", contact.force, row.printed);
           row.add("contact_area",
                   contact.contact_area,
                   Quantity::area,
-                  AtEnd::printed);
+                  row.printed);
           row.add("max_pressure", contact.max_pressure, Quantity::stress);
           row.add("max_gap", contact.max_gap, Quantity::length);
           if (face.gives_way())
@@ -145,11 +133,11 @@ namespace Viscoplastic
           if (condition.has_friction())
             add_force("friction_force_" + std::to_string(id),
                       forces.friction,
-                      AtEnd::printed);
+                      row.printed);
           if (condition.is_unilateral())
             add_force("contact_force_" + std::to_string(id),
                       forces.contact,
-                      AtEnd::printed);
+                      row.printed);
         }
     }
 
@@ -166,7 +154,7 @@ namespace Viscoplastic
       const Scene<dim> &scene      = d.scene();
       const auto        add_energy = [&row](const std::string &name,
                                      const double       energy) {
-        row.add(name, energy, Quantity::energy, StatisticsRow::AtEnd::printed);
+        row.add(name, energy, Quantity::energy, row.printed);
       };
       add_energy("stored_energy", balance.stored_energy());
       row.add("strain_energy",
@@ -180,7 +168,7 @@ namespace Viscoplastic
         row.add("friction_dissipation",
                 balance.friction_dissipation(),
                 Quantity::energy,
-                printed_if(scene.has_friction()));
+                scene.has_friction());
       add_energy("external_work", balance.external_work());
       if (scene.has_thermal_strain())
         add_energy("thermal_work", balance.thermal_work());
@@ -200,7 +188,6 @@ namespace Viscoplastic
                      const StepQuantities<dim> &quantities,
                      const SolutionErrors      &errors)
   {
-    using AtEnd                          = StatisticsRow::AtEnd;
     const Discretization<dim> &d         = *discretization;
     const TimeStep            &time_step = step.time_step;
     const StressSummary<dim>  &stress    = quantities.stress;
@@ -241,18 +228,18 @@ namespace Viscoplastic
                      force,
                      dim,
                      Quantity::force,
-                     AtEnd::printed);
+                     row.printed);
     row.add_vector("load", forces.load.resultant, dim, Quantity::force);
     if (d.space.axial)
       {
         row.add("axial_strain",
                 quantities.axial_strain,
                 Quantity::pure_number,
-                AtEnd::printed);
+                row.printed);
         row.add("axial_force",
                 quantities.axial_force,
                 Quantity::axial_force,
-                AtEnd::printed);
+                row.printed);
       }
     row.add("force_balance_defect", balance_defect(quantities));
     if (d.face)
@@ -263,10 +250,7 @@ namespace Viscoplastic
         row.add("slip_misalignment", friction.slip_misalignment);
       }
     add_energies(d, forces, quantities, balance, row);
-    row.add("max_displacement",
-            quantities.max_displacement,
-            Quantity::length,
-            AtEnd::compared);
+    row.add("max_displacement", quantities.max_displacement, Quantity::length);
     row.add("max_von_mises", stress.max_von_mises, Quantity::stress);
     row.add("mean_von_mises", stress.mean_von_mises, Quantity::stress);
     row.add("stress_norm", stress.stress_norm, Quantity::stress_norm);
@@ -290,7 +274,6 @@ namespace Viscoplastic
   Recorder<dim>::add_asked_for(const StepQuantities<dim> &quantities,
                                StatisticsRow             &row) const
   {
-    using AtEnd         = StatisticsRow::AtEnd;
     const double *value = quantities.point_fields.data();
     const bool are_few  = quantities.point_displacements.size() <= most_printed;
     for (unsigned int i = 0; i < quantities.point_displacements.size(); ++i)
@@ -300,7 +283,7 @@ namespace Viscoplastic
                        quantities.point_displacements[i],
                        dim,
                        Quantity::length,
-                       are_few ? AtEnd::printed : AtEnd::compared);
+                       are_few);
         if (!point_fields)
           continue;
         const std::vector<std::string> &names = point_fields->names();

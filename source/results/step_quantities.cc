@@ -78,6 +78,39 @@ namespace Viscoplastic
         sum += face.points[p].compliance.energy(state.contact.penetration(p));
       return face.sum(sum);
     }
+
+
+
+    /// Forces may be nothing beside the nodal ones that cancel: of stresses
+    /// that balance each other, to the tolerance of the solve. And of a body
+    /// that is carried along without strain nothing but rounding remains, which
+    /// need not add up to zero: it counts as a defect of 1e-8 at most. Looked
+    /// for rarely, since it takes the whole matrix.
+    template <int dim>
+    void
+    set_force_scale(const Discretization<dim> &d,
+                    const EvaluatedState<dim> &end,
+                    StepQuantities<dim>       &result)
+    {
+      const Forces<dim> &forces = end.forces;
+      DistributedVector  irreversible(forces.internal);
+      irreversible -= forces.elastic;
+      if (const double cancels =
+            forces.elastic.l1_norm() + irreversible.l1_norm();
+          result.largest_force <= 1e-6 * cancels)
+        result.force_scale = cancels;
+      DistributedVector moves(forces.u);
+      if (d.face)
+        d.face->restriction().add(
+          1.,
+          face_motion(d.face->layout(), end.state.contact.foundation_step),
+          moves);
+      result.load_size          = forces.load.values.l1_norm();
+      result.rounding_of_forces = force_of_rounding(d, moves);
+      if (result.largest_force <= result.rounding_of_forces)
+        result.force_scale =
+          std::max(result.force_scale, 1e8 * result.rounding_of_forces);
+    }
   } // namespace
 
 
@@ -154,31 +187,8 @@ namespace Viscoplastic
     // rest.
     if (d.scene().is_axisymmetric())
       result.sum_of_forces[0] = 0.;
-    // Forces may be nothing beside the nodal ones that cancel: of stresses that
-    // balance each other, to the tolerance of the solve. And of a body that is
-    // carried along without strain nothing but rounding remains, which need not
-    // add up to zero: it counts as a defect of 1e-8 at most. Looked for rarely,
-    // since it takes the whole matrix.
     if (stable_norm(result.sum_of_forces) > 1e-9 * result.largest_force)
-      {
-        DistributedVector irreversible(forces.internal);
-        irreversible -= forces.elastic;
-        if (const double cancels =
-              forces.elastic.l1_norm() + irreversible.l1_norm();
-            result.largest_force <= 1e-6 * cancels)
-          result.force_scale = cancels;
-        DistributedVector moves(forces.u);
-        if (d.face)
-          d.face->restriction().add(1.,
-                                    face_motion(d.face->layout(),
-                                                state.contact.foundation_step),
-                                    moves);
-        result.load_size          = forces.load.values.l1_norm();
-        result.rounding_of_forces = force_of_rounding(d, moves);
-        if (result.largest_force <= result.rounding_of_forces)
-          result.force_scale =
-            std::max(result.force_scale, 1e8 * result.rounding_of_forces);
-      }
+      set_force_scale(d, step.end, result);
     if (!is_initial)
       result.external_work = external_work(d.space, old.forces, forces) +
                              result.friction.foundation_work +

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <viscoplastic_contact/base/spelling.h>
+#include <viscoplastic_contact/base/messages.h>
 #include <viscoplastic_contact/base/version.h>
 #include <viscoplastic_contact/discretization/compatibility.h>
 #include <viscoplastic_contact/run/announcer.h>
@@ -17,8 +17,6 @@ namespace Viscoplastic
         << " MPI rank(s)\nEffects:\n";
     for (const std::string &effect : scene.effects())
       out << "  " << effect << '\n';
-    if (const auto changed = scene.changed_defaults(); !changed.empty())
-      out << "Changed defaults: " << enumeration(changed) << '\n';
     for (const std::string &warning : scene.warnings)
       console.remark("Warning: " + warning);
     out << std::flush;
@@ -137,18 +135,6 @@ namespace Viscoplastic
           discretization.scene().names.of("boundary", id) +
           ", although it has friction or unilateral contact: other conditions hold all of its nodes "
           "on the present mesh; refine it there, or release another boundary.");
-  }
-
-
-
-  template <int dim>
-  void
-  Announcer<dim>::announce_solver(const std::string &name)
-  {
-    if (name.empty() || name == solver)
-      return;
-    solver = name;
-    console.stream() << "Linear solver: " << solver << std::endl;
   }
 
 

@@ -5,7 +5,7 @@
 #include <deal.II/base/utilities.h>
 
 #include <viscoplastic_contact/base/files.h>
-#include <viscoplastic_contact/base/spelling.h>
+#include <viscoplastic_contact/base/messages.h>
 #include <viscoplastic_contact/base/version.h>
 #include <viscoplastic_contact/run/command_line.h>
 

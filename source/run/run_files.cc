@@ -164,26 +164,6 @@ namespace Viscoplastic
 
   template <int dim>
   void
-  RunFiles<dim>::set_mesh(const Discretization<dim> &discretization)
-  {
-    this->discretization = &discretization;
-    lines.set_mesh(discretization);
-  }
-
-
-
-  template <int dim>
-  void
-  RunFiles<dim>::begin_steps()
-  {
-    schedule.begin_steps(run.recorder.elapsed());
-    signals.emplace();
-  }
-
-
-
-  template <int dim>
-  void
   RunFiles<dim>::write(const TimeStep &step)
   {
     TimerOutput::Scope         phase(timer, "output");
@@ -284,27 +264,9 @@ namespace Viscoplastic
 
   template <int dim>
   void
-  RunFiles<dim>::finish()
-  {
-    TimerOutput::Scope phase(timer, "output");
-    output->finish();
-    signals.reset();
-  }
-
-
-
-  template <int dim>
-  void
-  RunFiles<dim>::close(const RunSummary<dim>          *coarser,
-                       const std::vector<std::string> &remarks)
+  RunFiles<dim>::close(const std::vector<std::string> &remarks)
   {
     const Recorder<dim> &recorder = run.recorder;
-    if (coarser != nullptr &&
-        Utilities::MPI::this_mpi_process(communicator) == 0)
-      write_uncertainties(directory() + "uncertainty.csv",
-                          parameters.units,
-                          recorder.summary(),
-                          *coarser);
     output->record_end(recorder.summary(),
                        {recorder.seconds(),
                         recorder.bill().friction(),

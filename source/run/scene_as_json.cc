@@ -3,7 +3,7 @@
 #include <deal.II/grid/grid_tools.h>
 
 #include <viscoplastic_contact/base/files.h>
-#include <viscoplastic_contact/base/spelling.h>
+#include <viscoplastic_contact/base/messages.h>
 #include <viscoplastic_contact/base/table.h>
 #include <viscoplastic_contact/base/version.h>
 #include <viscoplastic_contact/mesh/mesh.h>
@@ -12,7 +12,6 @@
 #include <viscoplastic_contact/run/scene_data.h>
 #include <viscoplastic_contact/scene/material.h>
 
-#include <boost/crc.hpp>
 #include <nlohmann/json.hpp>
 
 namespace Viscoplastic
@@ -54,7 +53,6 @@ namespace Viscoplastic
     unsigned int
     checksum_of_files(const Parameters &scene)
     {
-      boost::crc_32_type       crc;
       std::vector<std::string> files = scene.shared_libraries;
       if (!scene.geometry.file.empty())
         files.push_back(scene.geometry.file);
@@ -63,8 +61,7 @@ namespace Viscoplastic
         text += std::to_string(table->checksum) + ' ';
       for (const std::string &file : files)
         text += read_file_if_any(file).value_or("");
-      crc.process_bytes(text.data(), text.size());
-      return crc.checksum();
+      return checksum(text);
     }
 
 

@@ -4,7 +4,7 @@
 #include <deal.II/fe/fe_nothing.h>
 #include <deal.II/fe/fe_values.h>
 
-#include <viscoplastic_contact/discretization/volumetric_integration.h>
+#include <viscoplastic_contact/discretization/discretization.h>
 #include <viscoplastic_contact/mesh/mesh.h>
 #include <viscoplastic_contact/mesh/plane_model.h>
 #include <viscoplastic_contact/parameters/time_schedule.h>

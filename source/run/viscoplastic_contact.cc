@@ -47,8 +47,7 @@ namespace Viscoplastic
 
   template <int dim>
   std::string
-  ViscoplasticContact<dim>::run(const CommandLine::Restart restart,
-                                const RunSummary<dim>     *coarser)
+  ViscoplasticContact<dim>::run(const CommandLine::Restart restart)
   {
     files.emplace(run_state, console, timer, communicator);
     if (!pass.follows_another)
@@ -71,7 +70,7 @@ namespace Viscoplastic
     const std::string interruption = make_steps();
     files->finish();
     if (interruption.empty() && !needs_another_pass())
-      close(coarser);
+      close();
     return interruption;
   }
 
@@ -473,14 +472,14 @@ namespace Viscoplastic
 
   template <int dim>
   void
-  ViscoplasticContact<dim>::close(const RunSummary<dim> *coarser)
+  ViscoplasticContact<dim>::close()
   {
     recorder.check_sizes(/* at_end = */ true);
     std::vector<std::string> remarks = console.remarks();
     for (const std::string &remark : recorder.remarks(accepted.state))
       remarks.push_back(remark);
-    recorder.print(out, coarser);
-    files->close(coarser, remarks);
+    recorder.print(out);
+    files->close(remarks);
     for (const std::string &remark : remarks)
       out << remark << '\n';
     out << "Results in " << files->directory() << std::endl;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <viscoplastic_contact/base/spelling.h>
+#include <viscoplastic_contact/base/messages.h>
 #include <viscoplastic_contact/scene/boundary_condition.h>
 
 namespace Viscoplastic
@@ -175,6 +175,109 @@ namespace Viscoplastic
       Assert(false, ExcInternalError());
       return false;
     }
+
+
+
+    bool
+    is_given(const std::string &text)
+    {
+      return !Utilities::trim(text).empty();
+    }
+
+
+
+    /// Reads entries of a condition whose role and laws are known. What is not
+    /// used is parsed all the same: nonsense should not wait for the day when
+    /// the role changes.
+    template <int dim>
+    struct EntryReader
+    {
+      const BoundaryCondition<dim> &condition;
+
+      std::optional<Expression<dim>>
+      scalar(const std::string &name, const std::string &text) const
+      {
+        std::optional<Expression<dim>> result;
+        const bool                     is_used = uses(condition, name);
+        AssertThrow(is_given(text) || !is_used || name == "Pressure" ||
+                      name == "Normal stiffness" ||
+                      name == "Tangential stiffness" || name == "Gap" ||
+                      (condition.solution && name == "Normal stress"),
+                    ExcMessage(
+                      "'" + entry(condition.id, name) + "' is missing; the " +
+                      (name == "Normal stress" ?
+                         "contact law given normal stress" :
+                       name == "Compliance" ?
+                         "contact law normal compliance" :
+                         "friction law " + name_of(condition.friction_law)) +
+                      " needs it."));
+        if (is_given(text))
+          result.emplace(text, entry(condition.id, name));
+        if (!is_used)
+          result.reset();
+        return result;
+      }
+
+      /// Absent where identically zero.
+      std::optional<Expression<dim>>
+      nonzero_scalar(const std::string &name, const std::string &text) const
+      {
+        auto result = scalar(name, text);
+        if (result && result->is_zero())
+          result.reset();
+        return result;
+      }
+
+      /// Absent where identically zero.
+      std::optional<Expression<dim>>
+      stiffness(const std::string &name, const std::string &text) const
+      {
+        auto result = scalar(name, text);
+        AssertThrow(!result || !result->depends_on_time(),
+                    ExcMessage("'" + entry(condition.id, name) +
+                               "' depends on time; springs do not become "
+                               "stiffer or softer, let the traction depend on "
+                               "time."));
+        if (result && result->is_zero())
+          result.reset();
+        return result;
+      }
+
+      std::optional<VectorExpression<dim>>
+      vector(const std::string &name, const std::string &text) const
+      {
+        auto result =
+          optional_vector<dim>(text, dim, entry(condition.id, name));
+        if (!uses(condition, name))
+          result.reset();
+        return result;
+      }
+
+      std::array<std::optional<Expression<dim>>, dim>
+      displacement(const std::string &text) const
+      {
+        const std::string name    = entry(condition.id, "Displacement");
+        const bool        is_used = uses(condition, "Displacement");
+        if (!is_used && !is_given(text))
+          return {};
+        auto result =
+          condition.solution ?
+            derived_components<dim>(text, name, *condition.solution) :
+            given_components<dim>(text, name);
+        if (!is_used)
+          return {};
+        AssertThrow(std::any_of(result.begin(),
+                                result.end(),
+                                [](const auto &one) {
+                                  return one.has_value();
+                                }),
+                    ExcMessage("'" + name +
+                               "' prescribes nothing; a boundary that is free "
+                               "in all directions has the role free, or "
+                               "traction with a load or springs."));
+        return result;
+      }
+    };
   } // namespace
 
 
@@ -201,11 +304,6 @@ namespace Viscoplastic
                                "makes no data; use 'Data' = scene."));
       }
 
-    // What is not used is parsed all the same: nonsense should not wait for
-    // the day when the role changes.
-    const auto is_given = [](const std::string &text) {
-      return !Utilities::trim(text).empty();
-    };
     if (solution)
       for (const auto &[name, text] :
            {std::make_pair("Traction", parameters.traction),
@@ -215,53 +313,8 @@ namespace Viscoplastic
                     ExcMessage("'" + entry(id, name) +
                                "' is given, but 'Exact solution/Data' = "
                                "solution makes it; leave one of them out."));
-    const auto scalar = [&](const std::string &name, const std::string &text) {
-      std::optional<Expression<dim>> result;
-      AssertThrow(is_given(text) || !uses(*this, name) || name == "Pressure" ||
-                    name == "Normal stiffness" ||
-                    name == "Tangential stiffness" || name == "Gap" ||
-                    (solution && name == "Normal stress"),
-                  ExcMessage("'" + entry(id, name) + "' is missing; the " +
-                             (name == "Normal stress" ?
-                                "contact law given normal stress" :
-                              name == "Compliance" ?
-                                "contact law normal compliance" :
-                                "friction law " + name_of(friction_law)) +
-                             " needs it."));
-      if (is_given(text))
-        result.emplace(text, entry(id, name));
-      if (!uses(*this, name))
-        result.reset();
-      return result;
-    };
-    const auto vector = [&](const std::string &name, const std::string &text) {
-      auto result = optional_vector<dim>(text, dim, entry(id, name));
-      if (!uses(*this, name))
-        result.reset();
-      return result;
-    };
-
-    const bool has_displacement = uses(*this, "Displacement");
-    if (has_displacement || is_given(parameters.displacement))
-      {
-        auto components = solution ?
-                            derived_components<dim>(parameters.displacement,
-                                                    entry(id, "Displacement"),
-                                                    *solution) :
-                            given_components<dim>(parameters.displacement,
-                                                  entry(id, "Displacement"));
-        AssertThrow(!has_displacement || std::any_of(components.begin(),
-                                                     components.end(),
-                                                     [](const auto &one) {
-                                                       return one.has_value();
-                                                     }),
-                    ExcMessage("'" + entry(id, "Displacement") +
-                               "' prescribes nothing; a boundary that is free "
-                               "in all directions has the role free, or "
-                               "traction with a load or springs."));
-        if (has_displacement)
-          displacement = std::move(components);
-      }
+    const EntryReader<dim> read{*this};
+    displacement = read.displacement(parameters.displacement);
     AssertThrow(role != BoundaryRole::traction || solution ||
                   is_given(parameters.traction) ||
                   is_given(parameters.pressure) ||
@@ -271,28 +324,15 @@ namespace Viscoplastic
                            "' is missing, and so are 'Pressure' and "
                            "stiffnesses of springs; a boundary without load "
                            "has the role free."));
-    traction = vector("Traction", parameters.traction);
-    pressure = scalar("Pressure", parameters.pressure);
-    if (pressure && pressure->is_zero())
-      pressure.reset();
-    const auto stiffness = [&](const std::string &name,
-                               const std::string &text) {
-      auto result = scalar(name, text);
-      AssertThrow(!result || !result->depends_on_time(),
-                  ExcMessage("'" + entry(id, name) +
-                             "' depends on time; springs do not become stiffer "
-                             "or softer, let the traction depend on time."));
-      if (result && result->is_zero())
-        result.reset();
-      return result;
-    };
+    traction = read.vector("Traction", parameters.traction);
+    pressure = read.nonzero_scalar("Pressure", parameters.pressure);
     normal_stiffness =
-      stiffness("Normal stiffness", parameters.normal_stiffness);
+      read.stiffness("Normal stiffness", parameters.normal_stiffness);
     tangential_stiffness =
-      stiffness("Tangential stiffness", parameters.tangential_stiffness);
-    friction_bound = scalar("Friction bound", parameters.friction_bound);
+      read.stiffness("Tangential stiffness", parameters.tangential_stiffness);
+    friction_bound = read.scalar("Friction bound", parameters.friction_bound);
     friction_coefficient =
-      scalar("Friction coefficient", parameters.friction_coefficient);
+      read.scalar("Friction coefficient", parameters.friction_coefficient);
     slip_rate_factor.emplace(parameters.slip_rate_factor,
                              entry(id, "Slip rate factor"),
                              "v");
@@ -309,11 +349,9 @@ namespace Viscoplastic
                 ExcMessage("'" + entry(id, "Slip rate factor") +
                            "' is given, for which 'Exact solution/Data' = "
                            "solution makes no data; use 'Data' = scene."));
-    normal_stress = scalar("Normal stress", parameters.normal_stress);
-    given_gap     = scalar("Gap", parameters.gap);
-    if (given_gap && given_gap->is_zero())
-      given_gap.reset();
-    given_compliance    = scalar("Compliance", parameters.compliance);
+    normal_stress    = read.scalar("Normal stress", parameters.normal_stress);
+    given_gap        = read.nonzero_scalar("Gap", parameters.gap);
+    given_compliance = read.scalar("Compliance", parameters.compliance);
     compliance_exponent = parameters.compliance_exponent;
     AssertThrow(!given_compliance || !given_compliance->depends_on_time(),
                 ExcMessage("'" + entry(id, "Compliance") +
@@ -326,11 +364,10 @@ namespace Viscoplastic
         normal_is_given = is_unilateral();
       }
     foundation_displacement =
-      scalar("Foundation displacement", parameters.foundation_displacement);
-    if (foundation_displacement && foundation_displacement->is_zero())
-      foundation_displacement.reset();
+      read.nonzero_scalar("Foundation displacement",
+                          parameters.foundation_displacement);
     foundation_motion =
-      vector("Foundation motion", parameters.foundation_motion);
+      read.vector("Foundation motion", parameters.foundation_motion);
     // Only its change counts.
     if (foundation_motion && !foundation_motion->depends_on_time())
       foundation_motion.reset();

@@ -78,17 +78,6 @@ namespace Viscoplastic
 
 
   template <int dim>
-  double
-  BoundaryCondition<dim>::gap(const Point<dim> &x, const double t) const
-  {
-    return (given_gap ? given_gap->value(x, t) : 0.) +
-           (foundation_displacement ? foundation_displacement->value(x, t) :
-                                      0.);
-  }
-
-
-
-  template <int dim>
   void
   BoundaryCondition<dim>::derive_data()
   {
@@ -99,18 +88,6 @@ namespace Viscoplastic
           return solution->traction(x, normal, t) * normal;
         },
         "Exact solution/Stress");
-  }
-
-
-
-  template <int dim>
-  bool
-  BoundaryCondition<dim>::load_depends_on_time() const
-  {
-    return (traction && traction->depends_on_time()) ||
-           (pressure && pressure->depends_on_time()) ||
-           (normal_stress && normal_stress->depends_on_time()) ||
-           has_derived_traction();
   }
 
 
@@ -165,34 +142,6 @@ namespace Viscoplastic
 
 
   template <int dim>
-  Tensor<1, dim>
-  BoundaryCondition<dim>::sliding(const Point<dim> &x, const double t) const
-  {
-    if (!foundation_motion)
-      return {};
-    const Tensor<1, dim> w =
-      foundation_motion->vector(x, t) - foundation_motion->vector(x, 0.);
-    return w - (w * normal) * normal;
-  }
-
-
-
-  template <int dim>
-  Tensor<1, dim>
-  BoundaryCondition<dim>::glued_displacement(
-    const Point<dim>     &x,
-    const Tensor<1, dim> &outward_normal,
-    const double          t) const
-  {
-    Tensor<1, dim> u = sliding(x, t);
-    if (foundation_displacement)
-      u += foundation_displacement->value(x, t) * outward_normal;
-    return u;
-  }
-
-
-
-  template <int dim>
   std::vector<const Expression<dim> *>
   BoundaryCondition<dim>::data() const
   {
@@ -217,20 +166,6 @@ namespace Viscoplastic
         for (unsigned int d = 0; d < dim; ++d)
           result.push_back(&(**vector)[d]);
     return result;
-  }
-
-
-
-  template <int dim>
-  bool
-  BoundaryCondition<dim>::bound_depends_on_time() const
-  {
-    return (friction_bound && friction_bound->depends_on_time()) ||
-           (friction_coefficient && friction_coefficient->depends_on_time()) ||
-           (normal_stress && normal_stress->depends_on_time()) ||
-           (is_unilateral() && ((given_gap && given_gap->depends_on_time()) ||
-                                (foundation_displacement &&
-                                 foundation_displacement->depends_on_time())));
   }
 
 

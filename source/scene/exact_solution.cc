@@ -71,15 +71,6 @@ namespace Viscoplastic
 
 
   template <int dim>
-  Tensor<1, dim>
-  ExactSolution<dim>::displacement(const Point<dim> &x, const double t) const
-  {
-    return given_displacement->vector(x, t);
-  }
-
-
-
-  template <int dim>
   Tensor<2, dim>
   ExactSolution<dim>::gradient(const Point<dim> &x, const double t) const
   {
@@ -150,22 +141,6 @@ namespace Viscoplastic
         else if (column == j)
           result[row] = given_stress->value(x, t, c);
       }
-    return result;
-  }
-
-
-
-  template <int dim>
-  Tensor<1, dim>
-  ExactSolution<dim>::traction(const Point<dim>     &x,
-                               const Tensor<1, dim> &normal,
-                               const double          t) const
-  {
-    const SymmetricTensor<2, 3> sigma = stress(x, t);
-    Tensor<1, dim>              result;
-    for (unsigned int i = 0; i < dim; ++i)
-      for (unsigned int j = 0; j < dim; ++j)
-        result[i] += sigma[i][j] * normal[j];
     return result;
   }
 

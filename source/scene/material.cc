@@ -281,16 +281,6 @@ namespace Viscoplastic
 
 
 
-  template <int dim>
-  bool
-  Material<dim>::is_uniform() const
-  {
-    return anisotropic || (!youngs_modulus->depends_on_position() &&
-                           !poissons_ratio->depends_on_position());
-  }
-
-
-
   template class Material<2>;
   template class Material<3>;
 } // namespace Viscoplastic

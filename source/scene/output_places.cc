@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <viscoplastic_contact/base/messages.h>
-#include <viscoplastic_contact/base/spelling.h>
 #include <viscoplastic_contact/base/types.h>
 #include <viscoplastic_contact/scene/output_places.h>
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <viscoplastic_contact/base/spelling.h>
-#include <viscoplastic_contact/mesh/files/physical_names.h>
+#include <viscoplastic_contact/base/messages.h>
+#include <viscoplastic_contact/mesh/files/read_mesh_file.h>
 #include <viscoplastic_contact/scene/place_names.h>
 
 #include <cctype>
@@ -115,16 +115,6 @@ namespace Viscoplastic
           catch (const ExceptionBase &)
             {} // a place without a name has its number
       }
-  }
-
-
-
-  std::string
-  PlaceNames::of(const std::string &kind, const unsigned int number) const
-  {
-    const PlaceNumber place{kind, number};
-    const auto        found = names.find(place);
-    return found == names.end() ? place.text() : found->second;
   }
 
 

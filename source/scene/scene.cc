@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <viscoplastic_contact/base/messages.h>
-#include <viscoplastic_contact/base/spelling.h>
 #include <viscoplastic_contact/laws/strain.h>
 #include <viscoplastic_contact/scene/scene.h>
 
@@ -159,28 +158,6 @@ namespace Viscoplastic
 
 
   template <int dim>
-  bool
-  Scene<dim>::is_other_side(const types::boundary_id id) const
-  {
-    return std::any_of(boundary.begin(), boundary.end(), [id](const auto &b) {
-      return b.second.against == id;
-    });
-  }
-
-
-
-  template <int dim>
-  bool
-  Scene<dim>::has_contact_pairs() const
-  {
-    return std::any_of(boundary.begin(), boundary.end(), [](const auto &pair) {
-      return pair.second.against.has_value();
-    });
-  }
-
-
-
-  template <int dim>
   void
   Scene<dim>::derive_data()
   {
@@ -236,57 +213,6 @@ namespace Viscoplastic
 
   template <int dim>
   bool
-  Scene<dim>::has_viscosity() const
-  {
-    for (const auto &material : materials)
-      if (material->law)
-        return true;
-    return has_source();
-  }
-
-
-
-  template <int dim>
-  bool
-  Scene<dim>::has_history() const
-  {
-    return std::any_of(materials.begin(),
-                       materials.end(),
-                       [](const auto &material) {
-                         return material->law &&
-                                material->law->n_history_variables > 0;
-                       });
-  }
-
-
-
-  template <int dim>
-  bool
-  Scene<dim>::has_thermal_strain() const
-  {
-    return std::any_of(materials.begin(),
-                       materials.end(),
-                       [](const auto &material) {
-                         return material->thermal_expansion.has_value();
-                       });
-  }
-
-
-
-  template <int dim>
-  bool
-  Scene<dim>::has_moving_foundation() const
-  {
-    for (const auto &pair : boundary)
-      if (pair.second.has_friction() && pair.second.foundation_motion)
-        return true;
-    return false;
-  }
-
-
-
-  template <int dim>
-  bool
   Scene<dim>::has_constant_loads_and_bounds() const
   {
     for (const auto &[id, condition] : boundary)
@@ -298,94 +224,6 @@ namespace Viscoplastic
     return !(body_force && body_force->depends_on_time()) &&
            !(axial_force && axial_force->depends_on_time()) &&
            !(temperature && temperature->value.depends_on_time());
-  }
-
-
-
-  template <int dim>
-  const BoundaryCondition<dim> &
-  Scene<dim>::condition(const types::boundary_id id) const
-  {
-    for (const Support<dim> &support : supports)
-      if (support.condition.id == id)
-        return support.condition;
-    return boundary.at(id);
-  }
-
-
-
-  template <int dim>
-  bool
-  Scene<dim>::has_springs() const
-  {
-    for (const auto &pair : boundary)
-      if (pair.second.has_springs())
-        return true;
-    return false;
-  }
-
-
-
-  template <int dim>
-  bool
-  Scene<dim>::has_friction() const
-  {
-    for (const auto &pair : boundary)
-      if (pair.second.has_friction())
-        return true;
-    return false;
-  }
-
-
-
-  template <int dim>
-  bool
-  Scene<dim>::has_unilateral_contact() const
-  {
-    for (const auto &pair : boundary)
-      if (pair.second.is_unilateral())
-        return true;
-    return false;
-  }
-
-
-
-  template <int dim>
-  bool
-  Scene<dim>::has_contact() const
-  {
-    return !contact_boundaries().empty();
-  }
-
-
-
-  template <int dim>
-  std::set<types::boundary_id>
-  Scene<dim>::contact_boundaries() const
-  {
-    std::set<types::boundary_id> result;
-    for (const auto &[id, condition] : boundary)
-      if (condition.role == BoundaryRole::contact)
-        result.insert(id);
-    return result;
-  }
-
-
-
-  template <int dim>
-  bool
-  Scene<dim>::has_bounds_of_step_before() const
-  {
-    const bool is_lagged =
-      parameters.solver.coulomb_pressure == CoulombPressure::lagged;
-    return std::any_of(boundary.begin(),
-                       boundary.end(),
-                       [is_lagged](const auto &entry) {
-                         const BoundaryCondition<dim> &b = entry.second;
-                         return b.has_friction() &&
-                                (b.slip_rate_factor.has_value() ||
-                                 (is_lagged && b.has_computed_pressure()));
-                       });
   }
 
 

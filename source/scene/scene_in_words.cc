@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <viscoplastic_contact/base/instantiate_member.h>
+#include <viscoplastic_contact/base/types.h>
 #include <viscoplastic_contact/scene/scene.h>
 
 #include <algorithm>
@@ -10,6 +10,74 @@
 
 namespace Viscoplastic
 {
+  namespace
+  {
+    struct ContactEffect
+    {
+      ContactLaw  contact_law;
+      FrictionLaw friction_law;
+      const char *words;
+    };
+
+    const ContactEffect contact_effects[] = {
+      {ContactLaw::bilateral,
+       FrictionLaw::tresca,
+       "bilateral contact with Tresca friction"},
+      {ContactLaw::given_stress,
+       FrictionLaw::coulomb,
+       "Coulomb friction with given normal stress"},
+      {ContactLaw::bilateral,
+       FrictionLaw::none,
+       "frictionless bilateral contact"},
+      {ContactLaw::unilateral,
+       FrictionLaw::tresca,
+       "unilateral contact with Tresca friction"},
+      {ContactLaw::unilateral,
+       FrictionLaw::coulomb,
+       "unilateral contact with Coulomb friction of the computed pressure"},
+      {ContactLaw::unilateral,
+       FrictionLaw::none,
+       "frictionless unilateral contact"},
+      {ContactLaw::compliance,
+       FrictionLaw::tresca,
+       "normal compliance with Tresca friction"},
+      {ContactLaw::compliance,
+       FrictionLaw::coulomb,
+       "normal compliance with Coulomb friction of the computed pressure"},
+      {ContactLaw::compliance,
+       FrictionLaw::none,
+       "frictionless normal compliance"}};
+
+
+
+    /// Add "@p name on A and boundary 3, 4" with all boundaries whose condition
+    /// @p holds, unless there are none.
+    template <int dim, typename Predicate>
+    void
+    add_on_boundaries(const Scene<dim>         &scene,
+                      const std::string        &name,
+                      const Predicate          &holds,
+                      std::vector<std::string> &effects)
+    {
+      std::string pieces, ids;
+      for (const auto &[id, condition] : scene.boundary)
+        if (holds(condition))
+          {
+            const bool   has_name = scene.names.has("boundary", id);
+            std::string &list     = has_name ? pieces : ids;
+            list +=
+              (list.empty() ? "" : ", ") +
+              (has_name ? scene.names.of("boundary", id) : std::to_string(id));
+          }
+      if (!pieces.empty() || !ids.empty())
+        effects.push_back(name + " on " + pieces +
+                          (pieces.empty() || ids.empty() ? "" : " and ") +
+                          (ids.empty() ? "" : "boundary " + ids));
+    }
+  } // namespace
+
+
+
   template <int dim>
   std::vector<std::string>
   Scene<dim>::effects() const
@@ -19,8 +87,7 @@ namespace Viscoplastic
       is_generalized()  ? "elasticity (generalized plane strain)" :
       dim == 2          ? "elasticity (plane strain)" :
                           "elasticity (3D)"};
-    const std::string history  = name_of(parameters.stress.stress_history),
-                      pressure = "the computed pressure";
+    const std::string history = name_of(parameters.stress.stress_history);
     for (const auto &material : materials)
       {
         const std::string of =
@@ -43,71 +110,23 @@ namespace Viscoplastic
     if (has_viscosity())
       result.push_back("time integration by " +
                        name_of(parameters.time.scheme));
-    const auto boundaries = [&](const auto &condition) {
-      std::string pieces, ids;
-      for (const auto &[id, data] : boundary)
-        if (condition(data))
-          {
-            const bool   has_name = names.has("boundary", id);
-            std::string &list     = has_name ? pieces : ids;
-            list += (list.empty() ? "" : ", ") +
-                    (has_name ? names.of("boundary", id) : std::to_string(id));
-          }
-      return pieces + (pieces.empty() || ids.empty() ? "" : " and ") +
-             (ids.empty() ? "" : "boundary " + ids);
+    const auto add = [&](const std::string &name, const auto &holds) {
+      add_on_boundaries(*this, name, holds, result);
     };
-    const auto add = [&](const std::string &name, const std::string &pieces) {
-      if (!pieces.empty())
-        result.push_back(name + " on " + pieces);
-    };
-    const auto add_contact = [&](const std::string &name,
-                                 const ContactLaw   contact_law,
-                                 const FrictionLaw  friction_law) {
-      add(name, boundaries([=](const auto &b) {
-            return b.contact_law == contact_law &&
-                   b.friction_law == friction_law;
-          }));
-    };
-    add_contact("bilateral contact with Tresca friction",
-                ContactLaw::bilateral,
-                FrictionLaw::tresca);
-    add_contact("Coulomb friction with given normal stress",
-                ContactLaw::given_stress,
-                FrictionLaw::coulomb);
-    add_contact("frictionless bilateral contact",
-                ContactLaw::bilateral,
-                FrictionLaw::none);
-    add_contact("unilateral contact with Tresca friction",
-                ContactLaw::unilateral,
-                FrictionLaw::tresca);
-    add_contact("unilateral contact with Coulomb friction of " + pressure,
-                ContactLaw::unilateral,
-                FrictionLaw::coulomb);
-    add_contact("frictionless unilateral contact",
-                ContactLaw::unilateral,
-                FrictionLaw::none);
-    add_contact("normal compliance with Tresca friction",
-                ContactLaw::compliance,
-                FrictionLaw::tresca);
-    add_contact("normal compliance with Coulomb friction of " + pressure,
-                ContactLaw::compliance,
-                FrictionLaw::coulomb);
-    add_contact("frictionless normal compliance",
-                ContactLaw::compliance,
-                FrictionLaw::none);
-    add("friction that depends on the slip rate", boundaries([](const auto &b) {
-          return b.slip_rate_factor.has_value();
-        }));
-    add("glued contact",
-        boundaries([](const auto &b) { return b.is_glued(); }));
-    add("foundation moving in normal direction", boundaries([](const auto &b) {
-          return b.foundation_displacement.has_value();
-        }));
+    for (const ContactEffect &effect : contact_effects)
+      add(effect.words, [&effect](const auto &b) {
+        return b.contact_law == effect.contact_law &&
+               b.friction_law == effect.friction_law;
+      });
+    add("friction that depends on the slip rate",
+        [](const auto &b) { return b.slip_rate_factor.has_value(); });
+    add("glued contact", [](const auto &b) { return b.is_glued(); });
+    add("foundation moving in normal direction",
+        [](const auto &b) { return b.foundation_displacement.has_value(); });
     add("foundation moving in tangential direction",
-        boundaries(
-          [](const auto &b) { return b.foundation_motion.has_value(); }));
+        [](const auto &b) { return b.foundation_motion.has_value(); });
     add("contact with another body",
-        boundaries([](const auto &b) { return b.against.has_value(); }));
+        [](const auto &b) { return b.against.has_value(); });
     if (exact_solution)
       result.push_back(exact_solution->makes_data ?
                          "manufactured solution, which makes loads, initial "
@@ -116,13 +135,12 @@ namespace Viscoplastic
     if (body_force)
       result.push_back("body force");
     add("surface traction",
-        boundaries([](const auto &b) { return b.traction.has_value(); }));
+        [](const auto &b) { return b.traction.has_value(); });
     add("surface pressure",
-        boundaries([](const auto &b) { return b.pressure.has_value(); }));
-    add("springs", boundaries([](const auto &b) { return b.has_springs(); }));
-    add("prescribed displacement", boundaries([](const auto &b) {
-          return b.role == BoundaryRole::displacement;
-        }));
+        [](const auto &b) { return b.pressure.has_value(); });
+    add("springs", [](const auto &b) { return b.has_springs(); });
+    add("prescribed displacement",
+        [](const auto &b) { return b.role == BoundaryRole::displacement; });
     for (const Support<dim> &support : supports)
       result.push_back("support at " + support.place);
     if (initial_displacement || initial_stress)
@@ -153,33 +171,5 @@ namespace Viscoplastic
 
 
 
-  template <int dim>
-  std::vector<std::string>
-  Scene<dim>::changed_defaults() const
-  {
-    std::vector<std::string> result;
-    const auto               add = [&](const std::string &entry,
-                         const std::string &present,
-                         const std::string &earlier) {
-      if (parameters.origin_of(entry).empty())
-        result.push_back("'" + entry + "' = " + present + " (was " + earlier +
-                         ")");
-    };
-    if (has_viscosity())
-      add("Material/Stress history",
-          name_of(parameters.stress.stress_history),
-          "cell means");
-    if (std::any_of(boundary.begin(), boundary.end(), [](const auto &pair) {
-          return pair.second.has_computed_pressure();
-        }))
-      add("Solver/Coulomb pressure",
-          name_of(parameters.solver.coulomb_pressure),
-          "lagged");
-    return result;
-  }
-
-
-
   VISCOPLASTIC_INSTANTIATE_MEMBER(Scene, effects);
-  VISCOPLASTIC_INSTANTIATE_MEMBER(Scene, changed_defaults);
 } // namespace Viscoplastic

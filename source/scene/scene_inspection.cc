@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <viscoplastic_contact/base/instantiate_member.h>
 #include <viscoplastic_contact/base/messages.h>
+#include <viscoplastic_contact/base/types.h>
 #include <viscoplastic_contact/mesh/mesh_check.h>
 #include <viscoplastic_contact/mesh/mesh_ids.h>
-#include <viscoplastic_contact/mesh/mesh_pieces.h>
 #include <viscoplastic_contact/mesh/mesh_size.h>
 #include <viscoplastic_contact/mesh/plane_model.h>
 #include <viscoplastic_contact/scene/jump_in_time.h>
@@ -239,35 +238,20 @@ namespace Viscoplastic
   Scene<dim>::inspect_contact_pairs(
     const parallel::distributed::Triangulation<dim> &triangulation) const
   {
-    // What touches whom at each vertex of the coarse mesh, which all ranks
-    // know.
-    std::map<unsigned int, std::set<types::boundary_id>> ids_of_vertex;
-    for (const auto &cell : triangulation.cell_iterators_on_level(0))
-      for (const unsigned int f : cell->face_indices())
-        if (cell->face(f)->at_boundary())
-          for (const unsigned int v : cell->face(f)->vertex_indices())
-            ids_of_vertex[cell->face(f)->vertex_index(v)].insert(
-              cell->face(f)->boundary_id());
+    const auto touching = touching_boundaries(triangulation);
     for (const auto &[id, condition] : boundary)
       if (condition.against)
         for (const auto &[other_id, other] : boundary)
-          {
-            const bool is_contact =
-              other_id != id && other.role == BoundaryRole::contact;
-            if (!is_contact && !is_other_side(other_id))
-              continue;
-            for (const auto &[vertex, ids] : ids_of_vertex)
-              AssertThrow(other_id == id || ids.count(id) == 0 ||
-                            ids.count(other_id) == 0,
-                          ExcMessage(
-                            "Boundary " + std::to_string(id) +
-                            ", which is in contact with another body, has "
-                            "nodes in common with boundary " +
-                            std::to_string(other_id) +
-                            ", which is in contact, too; a node can be in "
-                            "contact with one other body or foundation. Leave "
-                            "a face between them free."));
-          }
+          AssertThrow(
+            other_id == id || touching.count({id, other_id}) == 0 ||
+              (other.role != BoundaryRole::contact && !is_other_side(other_id)),
+            ExcMessage("Boundary " + std::to_string(id) +
+                       ", which is in contact with another body, has nodes in "
+                       "common with boundary " +
+                       std::to_string(other_id) +
+                       ", which is in contact, too; a node can be in contact "
+                       "with one other body or foundation. Leave a face "
+                       "between them free."));
   }
 
 
@@ -277,34 +261,21 @@ namespace Viscoplastic
   Scene<dim>::inspect_junctions(
     const parallel::distributed::Triangulation<dim> &triangulation)
   {
-    // On the coarse mesh, which all ranks know.
-    std::map<types::boundary_id, std::set<unsigned int>> vertices;
-    for (const auto &cell : triangulation.cell_iterators_on_level(0))
-      for (const unsigned int f : cell->face_indices())
-        if (cell->face(f)->at_boundary())
-          for (const unsigned int v : cell->face(f)->vertex_indices())
-            vertices[cell->face(f)->boundary_id()].insert(
-              cell->face(f)->vertex_index(v));
+    const auto touching = touching_boundaries(triangulation);
     for (const auto &[id, condition] : boundary)
       if (condition.prescribes_all())
         for (const auto &[other_id, other] : boundary)
-          if (other.has_contact_points())
-            for (const unsigned int v : vertices[id])
-              if (vertices[other_id].count(v) == 1)
-                {
-                  warnings.push_back(
-                    "Boundary " + std::to_string(id) + " (" +
-                    (condition.is_glued() ? "glued" :
-                     condition.role == BoundaryRole::clamped ?
-                                            "clamped" :
-                                            "prescribed displacement") +
-                    ") touches boundary " + std::to_string(other_id) +
-                    (other.has_friction() ? " (friction)" : " (contact)") +
-                    "; the theory keeps the closures of Gamma_1 "
-                    "and Gamma_3 apart, and stresses may be singular where "
-                    "they meet.");
-                  break;
-                }
+          if (other.has_contact_points() && touching.count({id, other_id}) == 1)
+            warnings.push_back(
+              "Boundary " + std::to_string(id) + " (" +
+              (condition.is_glued() ? "glued" :
+               condition.role == BoundaryRole::clamped ?
+                                      "clamped" :
+                                      "prescribed displacement") +
+              ") touches boundary " + std::to_string(other_id) +
+              (other.has_friction() ? " (friction)" : " (contact)") +
+              "; the theory keeps the closures of Gamma_1 and Gamma_3 apart, "
+              "and stresses may be singular where they meet.");
   }
 
 

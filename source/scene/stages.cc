@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <viscoplastic_contact/base/instantiate_member.h>
+#include <viscoplastic_contact/base/types.h>
 #include <viscoplastic_contact/scene/scene.h>
 
 #include <algorithm>
@@ -192,44 +192,6 @@ namespace Viscoplastic
 
 
 
-  template <int dim>
-  unsigned int
-  Scene<dim>::stage_of_step_to(const double t) const
-  {
-    return std::lower_bound(stage_ends.begin(), stage_ends.end(), t) -
-           stage_ends.begin();
-  }
-
-
-
-  template <int dim>
-  void
-  Scene<dim>::enter_stage(const unsigned int n)
-  {
-    present_stage = n;
-    for (const auto &[id, entry] : entries)
-      material_of_id[id] =
-        entry.begin <= n && n < entry.end ? entry.material : entry.absent;
-  }
-
-
-
-  template <int dim>
-  std::vector<std::string>
-  Scene<dim>::absent_materials() const
-  {
-    std::vector<std::string> result;
-    for (const auto &[id, material] : material_of_id)
-      if (material->is_absent)
-        result.push_back(material->name);
-    return result;
-  }
-
-
-
   VISCOPLASTIC_INSTANTIATE_MEMBER(Scene, inspect_contact_of_stages);
   VISCOPLASTIC_INSTANTIATE_MEMBER(Scene, find_stages);
-  VISCOPLASTIC_INSTANTIATE_MEMBER(Scene, stage_of_step_to);
-  VISCOPLASTIC_INSTANTIATE_MEMBER(Scene, absent_materials);
-  VISCOPLASTIC_INSTANTIATE_MEMBER(Scene, enter_stage);
 } // namespace Viscoplastic

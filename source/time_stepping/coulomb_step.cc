@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <deal.II/base/mpi.h>
 
-#include <viscoplastic_contact/base/instantiate_member.h>
 #include <viscoplastic_contact/base/messages.h>
+#include <viscoplastic_contact/base/types.h>
+#include <viscoplastic_contact/contact/coulomb_bounds.h>
 #include <viscoplastic_contact/time_stepping/step_solver.h>
 
 #include <algorithm>
@@ -26,6 +27,33 @@ namespace Viscoplastic
     /// is refused.
     constexpr unsigned int stalled_after = 15;
     constexpr double       largest_blur  = 1e-3;
+
+
+
+    /// The last of @p n_solves has changed the bounds by @p change of their
+    /// sum, @p factor times as much as the one before.
+    std::string
+    no_fixed_point(const unsigned int n_solves,
+                   const double       change,
+                   const double       factor)
+    {
+      std::ostringstream message;
+      message << "The fixed point of Coulomb's law is not found in " << n_solves
+              << " solves of the step: the friction bounds still change by "
+              << change
+              << " of their sum, and the last solve has reduced the change "
+                 "by the factor "
+              << factor
+              << ". For a large friction coefficient, and where pieces with "
+                 "friction meet at an edge, the problem itself may have no "
+                 "unique solution; 'Solver/Coulomb pressure' = lagged takes "
+                 "the pressure of the step before.";
+      if (change < 1e-3)
+        message << " Where stiffness differs much, or cells are flat, "
+                   "rounding of forces may allow no less: a larger "
+                   "'Solver/Coulomb tolerance' accepts that.";
+      return message.str();
+    }
   } // namespace
 
 
@@ -144,24 +172,10 @@ namespace Viscoplastic
               std::max(report.relative_error, change / sum);
             return report;
           }
-        std::ostringstream message;
-        message << "The fixed point of Coulomb's law is not found in "
-                << report.bound_iterations
-                << " solves of the step: the friction bounds still change by "
-                << change / sum
-                << " of their sum, and the last solve has reduced the change "
-                   "by the factor "
-                << change / last_change
-                << ". For a large friction coefficient, and where pieces with "
-                   "friction meet at an edge, the problem itself may have no "
-                   "unique solution; 'Solver/Coulomb pressure' = lagged takes "
-                   "the pressure of the step before.";
-        if (change < 1e-3 * sum)
-          message << " Where stiffness differs much, or cells are flat, "
-                     "rounding of forces may allow no less: a larger "
-                     "'Solver/Coulomb tolerance' accepts that.";
         AssertThrow(report.bound_iterations < parameters.maximal_iterations,
-                    ExcMessage(message.str()));
+                    ExcMessage(no_fixed_point(report.bound_iterations,
+                                              change / sum,
+                                              change / last_change)));
         // Friction may hold what would press, and where pieces meet, each holds
         // the node against the others: pressures may swing between two states.
         // Then bounds follow as far as two changes tell (Aitken).
@@ -170,18 +184,9 @@ namespace Viscoplastic
                                            std::isfinite(last_change));
         if (swings && std::isfinite(change))
           {
-            double product = 0., square = 0.;
-            for (unsigned int p = 0; p < missing.size(); ++p)
-              {
-                const double difference = missing[p] - last_missing[p];
-                product += last_missing[p] * difference;
-                square += difference * difference;
-              }
-            product = face.layout().sum(product);
-            square  = face.layout().sum(square);
-            share   = square > 0. ?
-                        std::clamp(-share * product / square, 1e-3, 0.9) :
-                        0.5;
+            const auto aitken =
+              aitken_factor(face.layout(), share, last_missing, missing);
+            share = aitken ? std::clamp(*aitken, 1e-3, 0.9) : 0.5;
             for (unsigned int p = 0; p < bounds.size(); ++p)
               bounds[p] -= (1. - share) * missing[p];
           }

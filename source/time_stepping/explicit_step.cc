@@ -167,36 +167,6 @@ namespace Viscoplastic
 
 
 
-  template <int dim>
-  std::optional<PreconditionerState>
-  ExplicitStep<dim>::preconditioner_state() const
-  {
-    return solver.bulk().preconditioner_state();
-  }
-
-
-
-  template <int dim>
-  void
-  ExplicitStep<dim>::restore(
-    const EvaluatedState<dim> &,
-    const std::optional<PreconditionerState> &preconditioner)
-  {
-    if (!solver.bulk().is_exact())
-      solver.bulk().restore(preconditioner);
-  }
-
-
-
-  template <int dim>
-  std::string
-  ExplicitStep<dim>::solver_name() const
-  {
-    return solver.bulk().name();
-  }
-
-
-
   template class ExplicitStep<2>;
   template class ExplicitStep<3>;
   VISCOPLASTIC_INSTANTIATE(check_stability);

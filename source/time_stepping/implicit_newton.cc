@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <deal.II/base/mpi.h>
 
-#include <viscoplastic_contact/base/heartbeat.h>
-#include <viscoplastic_contact/base/instantiate_member.h>
 #include <viscoplastic_contact/base/messages.h>
-#include <viscoplastic_contact/discretization/implicit_flow.h>
+#include <viscoplastic_contact/base/progress.h>
+#include <viscoplastic_contact/base/types.h>
+#include <viscoplastic_contact/discretization/flow_laws.h>
 #include <viscoplastic_contact/time_stepping/implicit_step.h>
 #include <viscoplastic_contact/time_stepping/nonsymmetric_correction.h>
 

@@ -135,15 +135,6 @@ namespace Viscoplastic
 
 
 
-  template <int dim>
-  std::string
-  ImplicitStep<dim>::solver_name() const
-  {
-    return solver.is_ready() ? solver.bulk().name() : "";
-  }
-
-
-
   template class ImplicitStep<2>;
   template class ImplicitStep<3>;
 } // namespace Viscoplastic

@@ -142,29 +142,6 @@ namespace Viscoplastic
 
 
   template <int dim>
-  void
-  ProximalSprings<dim>::add_load(const DistributedVector &u,
-                                 DistributedVector       &load) const
-  {
-    DistributedVector force(springs);
-    force.scale(u);
-    load += force;
-  }
-
-
-
-  template <int dim>
-  double
-  ProximalSprings<dim>::norm(const DistributedVector &u) const
-  {
-    DistributedVector force(springs);
-    force.scale(u);
-    return std::sqrt(std::max(0., u * force));
-  }
-
-
-
-  template <int dim>
   double
   ProximalSprings<dim>::learned_step(const DistributedVector &last_center,
                                      const DistributedVector &center,
@@ -183,18 +160,6 @@ namespace Viscoplastic
     of_springs.scale(fall);
     const double square = fall * of_springs;
     return square > 0. ? (way * of_springs) / square : 0.;
-  }
-
-
-
-  template <int dim>
-  DistributedVector
-  ProximalSprings<dim>::rigid_part(const DistributedVector &u) const
-  {
-    DistributedVector result = discretization.space.owned_vector();
-    for (const DistributedVector &motion : orthonormal_motions)
-      result.add(u * motion, motion);
-    return result;
   }
 
 
@@ -315,6 +280,65 @@ namespace Viscoplastic
 
 
   template <int dim>
+  void
+  ProximalSprings<dim>::settle_whole(const StepProblem<dim>  &problem,
+                                     const HeldBody          &body,
+                                     const ContactState      &contact,
+                                     const DistributedVector &old_u,
+                                     DistributedVector       &center,
+                                     DistributedVector       &u) const
+  {
+    DistributedVector change(center);
+    change -= old_u;
+    const std::vector<double> way =
+      settle(body,
+             contact,
+             discretization.face->slips(change, problem.foundation_step));
+    for (unsigned int i = 0; i < motions.size(); ++i)
+      {
+        center.add(way[i], motions[i]);
+        u.add(way[i], motions[i]);
+      }
+  }
+
+
+
+  template <int dim>
+  std::string
+  ProximalSprings<dim>::restlessness(DistributedVector change,
+                                     const double      left_by_rounding) const
+  {
+    std::ostringstream message;
+    message << "The body that only contact holds has not come to rest in "
+            << max_proximal_steps << " solves of a step";
+    if (left_by_rounding > 0.)
+      message << ", in which rounding leaves the error " << left_by_rounding
+              << ": cells that are less flat, stiffness that differs less, "
+                 "Poisson's ratio farther from 1/2 or prescribed displacements "
+                 "mend that.";
+    else
+      {
+        // The last motion by which the body has gone on; each basis vector sees
+        // those before it only.
+        std::vector<double> way(motions.size());
+        for (std::size_t i = motions.size(); i-- > 0;)
+          {
+            way[i] = change * orthonormal_motions[i] /
+                     (motions[i] * orthonormal_motions[i]);
+            change.add(-way[i], motions[i]);
+          }
+        message << ": it goes on by a "
+                << discretization.space.name_of_motion(way)
+                << ". Even closed everywhere, contact and friction can hardly "
+                   "balance the loads against that. Prescribe displacements "
+                   "that hold the body, or end the run before.";
+      }
+    return message.str();
+  }
+
+
+
+  template <int dim>
   ContactReport
   ProximalSprings<dim>::solve(const StepProblem<dim>  &problem,
                               const DistributedVector &right_side,
@@ -422,47 +446,9 @@ namespace Viscoplastic
         // long before springs have let it go there. Steps that learn have the
         // springs where they are to be, but exaggerate the strains.
         if (discretization.face->gives_way() && !learns)
-          {
-            change = center;
-            change -= old_u;
-            const std::vector<double> way =
-              settle(body,
-                     contact,
-                     discretization.face->slips(change,
-                                                problem.foundation_step));
-            for (unsigned int i = 0; i < motions.size(); ++i)
-              {
-                center.add(way[i], motions[i]);
-                u.add(way[i], motions[i]);
-              }
-          }
+          settle_whole(problem, body, contact, old_u, center, u);
       }
-    std::ostringstream message;
-    message << "The body that only contact holds has not come to rest in "
-            << max_proximal_steps << " solves of a step";
-    if (left_by_rounding > 0.)
-      message << ", in which rounding leaves the error " << left_by_rounding
-              << ": cells that are less flat, stiffness that differs less, "
-                 "Poisson's ratio farther from 1/2 or prescribed displacements "
-                 "mend that.";
-    else
-      {
-        // The last motion by which the body has gone on; each basis vector sees
-        // those before it only.
-        std::vector<double> way(motions.size());
-        for (std::size_t i = motions.size(); i-- > 0;)
-          {
-            way[i] = change * orthonormal_motions[i] /
-                     (motions[i] * orthonormal_motions[i]);
-            change.add(-way[i], motions[i]);
-          }
-        message << ": it goes on by a "
-                << discretization.space.name_of_motion(way)
-                << ". Even closed everywhere, contact and friction can hardly "
-                   "balance the loads against that. Prescribe displacements "
-                   "that hold the body, or end the run before.";
-      }
-    AssertThrow(false, ExcMessage(message.str()));
+    AssertThrow(false, ExcMessage(restlessness(change, left_by_rounding)));
     return report;
   }
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <deal.II/base/exceptions.h>
 
-#include <viscoplastic_contact/base/spelling.h>
+#include <viscoplastic_contact/base/messages.h>
 #include <viscoplastic_contact/error/error_budget.h>
 #include <viscoplastic_contact/parameters/parameter_file.h>
 #include <viscoplastic_contact/time_stepping/step_control.h>
@@ -197,17 +197,6 @@ namespace Viscoplastic
 
 
 
-  bool
-  StepControl::has_kink_within(const double from, const double to) const
-  {
-    const double near = 1e-9 * schedule.end_time();
-    const auto   later =
-      std::upper_bound(data_kinks.begin(), data_kinks.end(), from + near);
-    return later != data_kinks.end() && *later <= to + near;
-  }
-
-
-
   double
   StepControl::next_target(const double t) const
   {
@@ -241,38 +230,6 @@ namespace Viscoplastic
       if (dual_times[i] >= t)
         largest = std::max(largest, dual_norms[i]);
     return largest;
-  }
-
-
-
-  double
-  StepControl::smallest(const double t) const
-  {
-    const auto &phase = schedule.phase_at(t);
-    return parameters.smallest_step > 0. ? parameters.smallest_step :
-                                           1e-6 * (phase.end - phase.start);
-  }
-
-
-
-  double
-  StepControl::largest(const double t) const
-  {
-    const auto &phase = schedule.phase_at(t);
-    if (parameters.largest_step > 0.)
-      return parameters.largest_step;
-    return has_estimate ? phase.end - phase.start : phase.step_size();
-  }
-
-
-
-  bool
-  StepControl::is_kink(const double t) const
-  {
-    const double near = 1e-9 * schedule.end_time();
-    return t == 0. || schedule.phase_ending_at(t) > 0 ||
-           has_kink_within(t - 2. * near, t) ||
-           std::binary_search(landing_times.begin(), landing_times.end(), t);
   }
 
 
@@ -343,6 +300,35 @@ namespace Viscoplastic
 
 
 
+  double
+  StepControl::growth_allowed_by(const double ratio, const double k)
+  {
+    present.allowed = infinity;
+    if (!(ratio > 0.))
+      return largest_growth;
+    const double measured = std::max(ratio, least_ratio);
+    const double best     = std::pow(aim / measured, 1. / order);
+    present.allowed       = best * k;
+    if (before.allowed > 0. && before.allowed < infinity)
+      {
+        const double growth =
+          std::clamp(std::log(present.allowed / before.allowed),
+                     -most_telling_growth,
+                     most_telling_growth);
+        present.growth_weight = 0.9 * before.growth_weight + 1.;
+        present.growth += (growth - before.growth) / present.growth_weight;
+      }
+    double factor = std::pow(aim / measured, 0.3 / order);
+    if (before.last_ratio > 0.)
+      factor *= std::pow(before.last_ratio / measured, 0.4 / order);
+    if (best >= 1. && best < least_change)
+      factor = 1.;
+    present.last_ratio = measured;
+    return factor;
+  }
+
+
+
   bool
   StepControl::accepts(const TimeStep   &step,
                        const StepErrors &errors,
@@ -405,29 +391,7 @@ namespace Viscoplastic
     present.unsigned_sum = before.unsigned_sum + errors.indicator;
     if (is_repeated)
       return true;
-    double factor   = largest_growth;
-    present.allowed = infinity;
-    if (ratio > 0.)
-      {
-        const double measured = std::max(ratio, least_ratio);
-        const double best     = std::pow(aim / measured, 1. / order);
-        present.allowed       = best * step.k;
-        if (before.allowed > 0. && before.allowed < infinity)
-          {
-            const double growth =
-              std::clamp(std::log(present.allowed / before.allowed),
-                         -most_telling_growth,
-                         most_telling_growth);
-            present.growth_weight = 0.9 * before.growth_weight + 1.;
-            present.growth += (growth - before.growth) / present.growth_weight;
-          }
-        factor = std::pow(aim / measured, 0.3 / order);
-        if (before.last_ratio > 0.)
-          factor *= std::pow(before.last_ratio / measured, 0.4 / order);
-        if (best >= 1. && best < least_change)
-          factor = 1.;
-        present.last_ratio = measured;
-      }
+    double factor = growth_allowed_by(ratio, step.k);
     // Up to the event, steps do not grow; behind it, they do quickly.
     if (has_event)
       present.event_before = 0.;

@@ -22,19 +22,6 @@ namespace Viscoplastic
 
 
 
-  void
-  StepOutcome::note(const FlowRate &rate)
-  {
-    if (rate.relaxation_rate > 0. && 2. / rate.relaxation_rate < step_limit)
-      {
-        step_limit        = 2. / rate.relaxation_rate;
-        critical_position = rate.critical_position;
-      }
-    capped_volume = std::max(capped_volume, rate.capped_volume);
-  }
-
-
-
   template <int dim>
   StepSolver<dim>::StepSolver(const Discretization<dim> &discretization)
     : discretization(discretization)

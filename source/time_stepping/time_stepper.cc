@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <viscoplastic_contact/base/heartbeat.h>
 #include <viscoplastic_contact/base/messages.h>
+#include <viscoplastic_contact/base/progress.h>
 #include <viscoplastic_contact/time_stepping/time_stepper.h>
 
 #include <new>
@@ -49,6 +49,60 @@ namespace Viscoplastic
           work +=
             0.5 * (after.bound[p] - before.bound[p]) * after.slip[p].norm();
       return std::abs(face.sum(work));
+    }
+
+
+
+    /// Those of a step in which points slip as they did in the one before.
+    template <int dim>
+    SlipDefects
+    slip_defects_of_step(const ContactFace<dim>    &face,
+                         const EvaluatedState<dim> &accepted,
+                         const EvaluatedState<dim> &end)
+    {
+      DistributedVector change = end.forces.u;
+      change -= accepted.forces.u;
+      return slip_defects(face.layout(),
+                          accepted.state.contact,
+                          end.state.contact,
+                          face.slips(change, end.state.contact.foundation_step),
+                          end.state.k,
+                          accepted.state.k);
+    }
+
+
+
+    /// Make errors in the energy norm those of the quantity of interest, whose
+    /// dual solution will have at least the norm @p later_dual_norm once.
+    template <int dim>
+    void
+    make_errors_of_quantity(const Discretization<dim> &discretization,
+                            const EvaluatedState<dim> &accepted,
+                            const EvaluatedState<dim> &end,
+                            const bool                 moves,
+                            const double               later_dual_norm,
+                            StepErrors                &errors)
+    {
+      const QuantityEstimate &quantity = end.errors.quantity,
+                             &before   = accepted.errors.quantity;
+      const bool is_sum = discretization.scene().quantity->is_sum();
+      errors.indicator *=
+        std::max(quantity.dual_norm, is_sum ? 0. : later_dual_norm);
+      if (moves)
+        errors.of_events = quantity.friction_indicator;
+      if (is_sum && discretization.face)
+        errors.of_events +=
+          work_of_changed_bounds(discretization.face->layout(),
+                                 accepted.state.contact,
+                                 end.state.contact);
+      // The body may move on while the quantity hardly changes, as after a
+      // change of the mesh.
+      const double share =
+        errors.size > 0. ? std::min(1., errors.change / errors.size) : 0.;
+      errors.size = std::abs(quantity.value);
+      errors.change =
+        std::max(std::abs(quantity.value - before.value), share * errors.size);
+      errors.before = before.time + before.friction;
     }
   } // namespace
 
@@ -105,12 +159,9 @@ namespace Viscoplastic
              ++i)
           state.friction_work.begin()[i] += old.friction_work.begin()[i];
     }
-  } // namespace
 
 
 
-  namespace
-  {
     /// Whether any friction bound follows from the pressures of a state.
     /// Collective.
     template <int dim>
@@ -128,16 +179,6 @@ namespace Viscoplastic
         }));
     }
   } // namespace
-
-
-
-  template <int dim>
-  bool
-  TimeStepper<dim>::needs_rate() const
-  {
-    return scene.has_viscosity() &&
-           (!scene.is_implicit() || error_estimator != nullptr);
-  }
 
 
 
@@ -353,17 +394,7 @@ namespace Viscoplastic
                               step.time_step.t_old);
     if (discretization.slipping_face() != nullptr && accepted.state.k > 0. &&
         accepted.is_solution && accepted.has_slip_rate && !is_after_kink)
-      {
-        DistributedVector change = end.forces.u;
-        change -= accepted.forces.u;
-        slip_defects = Viscoplastic::slip_defects(
-          discretization.face->layout(),
-          accepted.state.contact,
-          state.contact,
-          discretization.face->slips(change, state.contact.foundation_step),
-          state.k,
-          accepted.state.k);
-      }
+      slip_defects = slip_defects_of_step(*discretization.face, accepted, end);
     error_estimator->assess(discretization.laws,
                             time_defect(step.is_implicit ?
                                           TimeScheme::backward_euler :
@@ -409,29 +440,12 @@ namespace Viscoplastic
                       std::max(estimate.energy_norm, estimate.irreversible_norm);
     errors.before = accepted.errors.time + accepted.errors.friction;
     if (is_of_quantity)
-      {
-        const QuantityEstimate &quantity = estimate.quantity,
-                               &before   = accepted.errors.quantity;
-        errors.indicator *=
-          scene.quantity->is_sum() ?
-            quantity.dual_norm :
-            std::max(quantity.dual_norm, control.later_dual_norm(state.t));
-        if (moves)
-          errors.of_events = quantity.friction_indicator;
-        if (scene.quantity->is_sum() && discretization.face)
-          errors.of_events +=
-            work_of_changed_bounds(discretization.face->layout(),
-                                   accepted.state.contact,
-                                   state.contact);
-        // The body may move on while the quantity hardly changes, as after a
-        // change of the mesh.
-        const double share =
-          errors.size > 0. ? std::min(1., errors.change / errors.size) : 0.;
-        errors.size   = std::abs(quantity.value);
-        errors.change = std::max(std::abs(quantity.value - before.value),
-                                 share * errors.size);
-        errors.before = before.time + before.friction;
-      }
+      make_errors_of_quantity(discretization,
+                              accepted,
+                              end,
+                              moves,
+                              control.later_dual_norm(state.t),
+                              errors);
     else if (moves)
       errors.of_events = estimate.friction - accepted.errors.friction;
     errors.indicator += errors.of_events;
@@ -584,16 +598,6 @@ namespace Viscoplastic
                                nullptr,
                                initial,
                                initial);
-  }
-
-
-
-  template <int dim>
-  double
-  TimeStepper<dim>::tolerance(const EvaluatedState<dim> &accepted) const
-  {
-    return error_estimator ? error_estimator->tolerance(accepted.errors) :
-                             solver_parameters.strict_tolerance();
   }
 
 

@@ -361,8 +361,8 @@ class Scene(Drawing):
         off = 0.05 if "Step control/Tolerance" in self.entries else 0.25
         self.maybe(off, "Error control/Error bar", "false")
         self.maybe(0.15, "Error control/Algebraic fraction", "0.5", "0.001")
-        if self.refinements > 0 and self.chance(0.12):
-            self.set("Error control/Two-level comparison", "true")
+        if self.refinements > 0:
+            self.chance(0)  # of an entry that is gone; scenes keep their numbers
         entry = lambda name: f"Mesh refinement/{name}"
         strategies = "residual", "kelly"
         if self.chance(0.15):

@@ -1,8 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The error bar of a run, the tolerance that goes with it, and the comparison
-of two levels."""
-
-import csv
+"""The error bar of a run, and the tolerance that goes with it."""
 
 import numpy as np
 
@@ -122,11 +119,6 @@ class LongCreep(TestCase):
 
     def test_quadrature_points_by_default(self):
         result, effectivity = self.compared(2)
-        self.assertIn(
-            "Changed defaults: 'Material/Stress history' = quadrature points (was cell "
-            "means)\n",
-            result.stdout,
-        )
         self.assertNotIn("estimate_history", result.statistics)
         self.assertClose(self.velocity(result), self.VELOCITY, relative=0.04)
         # the part of the mesh alone, since the steps are those of the fine run
@@ -145,8 +137,6 @@ class LongCreep(TestCase):
         record = result.info["estimated_error"]
         self.assertGreater(record["history"], record["space"])
         self.assertIn("mesh, in the history", result.stdout)
-        # a scene that says what it wants is told nothing
-        self.assertNotIn("Changed defaults", result.stdout)
 
     def test_quantity_to_a_tolerance(self):
         """A point remembers what rates have been wrong by."""
@@ -744,75 +734,6 @@ class Restart(TestCase):
                 overrides={"Error control__Error bar": "false"},
             )
             self.assertIn("'Error control/Error bar'", refusal.stderr)
-
-
-class TwoLevels(TestCase):
-    def test_uncertainties_are_the_differences(self):
-        scene = {
-            "Geometry/Arguments": "8, 4 : 0, 0 : 2, 1 : true",
-            "Geometry/Global refinements": 1,
-            "Time/Phases": "1: 8, 2: 7",
-            "Output/Fields every": 0,
-        }
-        # The coarser run has no directory to keep reference fields in.
-        result = run(
-            "slab",
-            {
-                **scene,
-                "Error control/Two-level comparison": "true",
-                "Output/Reference fields": "true",
-            },
-        )
-        references = sorted(result.directory.glob("reference_*.bin"))
-        self.assertEqual(len(references), 2)
-        coarser = run(
-            "slab",
-            {**scene, "Geometry/Global refinements": 0, "Time/Phases": "1: 4, 2: 3"},
-        )
-        self.assertIn(" +- ", result.stdout)
-        with open(result.directory / "uncertainty.csv", newline="") as file:
-            rows = list(csv.DictReader(file))
-        names = [row["quantity"] for row in rows]
-        for name in ("friction_force_x", "slip_area", "friction_dissipation",
-                     "viscous_dissipation", "reaction_3_x", "point0_y"):
-            self.assertIn(name, names)
-        for row in rows:
-            name = row["quantity"]
-            self.assertClose(float(row["value"]), result[name][-1], 1e-9, 1e-12)
-            self.assertClose(
-                float(row["uncertainty"]),
-                abs(result[name][-1] - coarser[name][-1]),
-                relative=1e-5,
-                absolute=1e-8,
-                what=name,
-            )
-        # The run itself is what it would be without.
-        alone = run("slab", scene)
-        self.assertClose(result["stored_energy"], alone["stored_energy"])
-
-    def test_refused_without_a_coarser_mesh(self):
-        result = run(
-            "slab", {"Error control/Two-level comparison": "true"}, check=False
-        )
-        self.assertEqual(result.returncode, 1)
-        self.assertIn("'Geometry/Global refinements' is 0", result.stderr)
-        self.assertFalse((result.directory / "statistics.csv").exists())
-
-    def test_a_coarser_run_that_fails_is_named(self):
-        """Twice the time step is beyond the stability limit."""
-        result = run(
-            "slab",
-            {
-                "Geometry/Arguments": "8, 4 : 0, 0 : 2, 1 : true",
-                "Geometry/Global refinements": 1,
-                "Time/Phases": "4: 2",
-                "Error control/Two-level comparison": "true",
-            },
-            check=False,
-        )
-        self.assertEqual(result.returncode, 1)
-        self.assertIn("Two-level comparison", result.stderr)
-        self.assertIn("stability limit", result.stderr)
 
 
 if __name__ == "__main__":

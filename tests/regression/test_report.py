@@ -166,7 +166,7 @@ class Runs(TestCase):
             self.assertClose(friction, float(printed), 0.05, 1e-3)
 
     def test_bill_knows_all_phases(self):
-        header = SOURCE / "include/viscoplastic_contact/results/run_phases.h"
+        header = SOURCE / "include/viscoplastic_contact/results/run_summary.h"
         text = header.read_text().split("run_phases{", 1)[1]
         names = re.findall(r'\{"([^"]+)"', text)
         self.assertEqual([name for name in bill.PHASES if name != "friction"], names)
@@ -328,15 +328,6 @@ class OtherResults(TestCase):
         self.assertIsNone(page.curves)
         (result.directory / "run.json").unlink()
         self.assertIn("no run.json", page_of(result).words["remarks"])
-
-    def test_uncertainties_of_two_levels(self):
-        result = run("slab", {"Time/Phases": "1: 4"})
-        (result.directory / "uncertainty.csv").write_text(
-            "quantity,value,uncertainty\nfriction_force_x,1,0.125\n"
-        )
-        rows = {row[0]: row[1:] for row in page_of(result).rows["results"]}
-        self.assertEqual(rows["friction_force_x"][3:], [0.125])
-        self.assertEqual(len(rows["stored_energy"]), 3)
 
     def test_refused(self):
         with tempfile.TemporaryDirectory() as directory:

@@ -358,16 +358,6 @@ class Missed(TestCase):
         )
 
 
-class Twice(TestCase):
-    def test_tolerance_beside_the_run(self):
-        result = run(
-            "slab",
-            {**COARSE_SLAB, **to(0.1), "Error control/Two-level comparison": "true"},
-        )
-        self.assertIn("+- what twice the tolerance changes", result.stdout)
-        self.assertTrue((result.directory / "uncertainty.csv").exists())
-
-
 class Refused(TestCase):
     refused_scene = ("slab", {**COARSE_SLAB, **to(0.1)}, None)
 

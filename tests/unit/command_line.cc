@@ -5,7 +5,6 @@
 #include "body.h"
 #include "folder.h"
 #include "refusals.h"
-#include <viscoplastic_contact/base/heartbeat.h>
 #include <viscoplastic_contact/base/mpi_singleton.h>
 #include <viscoplastic_contact/base/progress.h>
 #include <viscoplastic_contact/run/command_line.h>

@@ -5,7 +5,7 @@
 
 #include "random.h"
 #include <viscoplastic_contact/contact/contact_points.h>
-#include <viscoplastic_contact/contact/coulomb_node.h>
+#include <viscoplastic_contact/contact/coulomb_law.h>
 
 #include <gtest/gtest.h>
 

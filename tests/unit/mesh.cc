@@ -6,7 +6,7 @@
 #include "meshes.h"
 #include "refusals.h"
 #include <viscoplastic_contact/mesh/mesh_check.h>
-#include <viscoplastic_contact/mesh/mesh_pieces.h>
+#include <viscoplastic_contact/mesh/mesh_ids.h>
 
 #include <sys/resource.h>
 

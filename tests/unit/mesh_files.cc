@@ -5,7 +5,7 @@
 
 #include "meshes.h"
 #include <viscoplastic_contact/mesh/files/read_mesh_file.h>
-#include <viscoplastic_contact/mesh/mesh_pieces.h>
+#include <viscoplastic_contact/mesh/mesh_ids.h>
 
 using namespace Viscoplastic;
 using namespace Viscoplastic::Testing;

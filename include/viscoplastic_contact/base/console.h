@@ -3,6 +3,7 @@
 
 #include <deal.II/base/mpi.h>
 
+#include <algorithm>
 #include <chrono>
 #include <fstream>
 #include <sstream>
@@ -63,7 +64,10 @@ namespace Viscoplastic
 
     /// Seconds since the beginning.
     double
-    age() const;
+    age() const
+    {
+      return std::chrono::duration<double>(Clock::now() - beginning).count();
+    }
 
     /// Whether nothing has been said for @p seconds, or for a hundredth of the
     /// time since the beginning if that is longer, so that long runs do not
@@ -74,7 +78,15 @@ namespace Viscoplastic
     /// Print a sentence that the user should not overlook; it is repeated at
     /// the end.
     void
-    remark(const std::string &sentence);
+    remark(const std::string &sentence)
+    {
+      // Two passes may say the same.
+      if (std::find(all_remarks.begin(), all_remarks.end(), sentence) !=
+          all_remarks.end())
+        return;
+      all_remarks.push_back(sentence);
+      everywhere << sentence << std::endl;
+    }
 
     /// The sentences given to remark(), in the order in which they came.
     const std::vector<std::string> &

@@ -183,14 +183,32 @@ namespace Viscoplastic
     vector(const Point<dim> &x, const double t) const;
 
     bool
-    depends_on_time() const;
+    depends_on_time() const
+    {
+      for (const auto &component : components)
+        if (component.depends_on_time())
+          return true;
+      return false;
+    }
 
     bool
-    is_zero() const;
+    is_zero() const
+    {
+      for (const auto &component : components)
+        if (!component.is_zero())
+          return false;
+      return true;
+    }
 
     /// Whether it has the same text as another one, and is the same function.
     bool
-    is_written_as(const VectorExpression &other) const;
+    is_written_as(const VectorExpression &other) const
+    {
+      bool result = components.size() == other.components.size();
+      for (unsigned int c = 0; result && c < components.size(); ++c)
+        result = components[c].is_written_as(other.components[c]);
+      return result;
+    }
 
     const Expression<dim> &
     operator[](const unsigned int c) const

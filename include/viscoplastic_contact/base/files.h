@@ -3,6 +3,7 @@
 
 #include <nlohmann/json_fwd.hpp>
 
+#include <cstdint>
 #include <optional>
 #include <string>
 
@@ -84,6 +85,10 @@ namespace Viscoplastic
   /// is in neither place.
   std::string
   path_of_resource(const std::string &name);
+
+  /// The CRC-32 of a text.
+  std::uint32_t
+  checksum(const std::string &bytes);
 
   /// JSON as our files have it: indented, with a newline at the end. Numbers
   /// have all their digits, or are null where they are not finite. Texts may

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
+#include <sstream>
 #include <string>
 
 /// Energies, norms and estimates of errors are made of squares, which leave the
@@ -22,11 +23,20 @@ namespace Viscoplastic
 
   /// "<what> is <value>; it must lie between <least> and <largest> ...", and
   /// why, and what to do.
-  std::string
+  inline std::string
   out_of_range(const std::string &what,
                const double       value,
                const double       least,
-               const double       largest);
+               const double       largest)
+  {
+    std::ostringstream message;
+    message << what << " is " << value << "; it must lie between " << least
+            << " and " << largest
+            << ", where squares stay within the range of floating-point "
+               "numbers; choose other units or look for a datum that is too "
+               "large or too small.";
+    return message.str();
+  }
 
 
   /// The norm of a tensor or vector also where squares of its entries leave the

@@ -26,6 +26,18 @@ namespace Viscoplastic
   /// Ids of boundaries and materials go up to this in mesh files, parameter
   /// files and expressions.
   constexpr unsigned int largest_id = 999999999;
+
+
+
+  /// The type of a member function without its class.
+  template <typename Pointer>
+  struct MemberFunction;
+
+  template <typename Function, typename Class>
+  struct MemberFunction<Function Class::*>
+  {
+    using type = Function;
+  };
 } // namespace Viscoplastic
 
 /// Explicit instantiation of a function template of the dimension alone. One of
@@ -33,3 +45,11 @@ namespace Viscoplastic
 #define VISCOPLASTIC_INSTANTIATE(function)    \
   template decltype(function<2>) function<2>; \
   template decltype(function<3>) function<3>
+
+/// As VISCOPLASTIC_INSTANTIATE, of a member function without overloads that
+/// stands apart from the others of its class, in a file of its own.
+#define VISCOPLASTIC_INSTANTIATE_MEMBER(Class, function)       \
+  template MemberFunction<decltype(&Class<2>::function)>::type \
+    Class<2>::function;                                        \
+  template MemberFunction<decltype(&Class<3>::function)>::type \
+    Class<3>::function

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
+#include <cmath>
 #include <optional>
 #include <string>
 #include <vector>
@@ -21,7 +22,13 @@ namespace Viscoplastic
     operator*(const Dimension &other) const;
 
     Dimension
-    power(const double exponent) const;
+    power(const double exponent) const
+    {
+      return {exponent * length,
+              exponent * time,
+              exponent * stress,
+              exponent * temperature};
+    }
   };
 
   /// The dimension in words: "a stress", "a velocity", "length^2 / time".
@@ -117,7 +124,12 @@ namespace Viscoplastic
 
     /// The size in SI units of the scene's unit of this @p dimension.
     double
-    si(const Dimension &dimension) const;
+    si(const Dimension &dimension) const
+    {
+      return std::pow(length.si, dimension.length) *
+             std::pow(time.si, dimension.time) *
+             std::pow(stress.si, dimension.stress);
+    }
 
     /// The name for @p quantity of a scene in @p dim dimensions, such as "MN/m"
     /// of a force in plane strain; empty without units.
@@ -127,11 +139,19 @@ namespace Viscoplastic
     /// " [MPa]", behind the name of a column or field; empty without units and
     /// for pure numbers.
     std::string
-    label(const Quantity quantity, const unsigned int dim) const;
+    label(const Quantity quantity, const unsigned int dim) const
+    {
+      const std::string unit = name(quantity, dim);
+      return unit.empty() ? "" : " [" + unit + ']';
+    }
 
     /// " MPa", behind a number; likewise.
     std::string
-    suffix(const Quantity quantity, const unsigned int dim = 3) const;
+    suffix(const Quantity quantity, const unsigned int dim = 3) const
+    {
+      const std::string unit = name(quantity, dim);
+      return unit.empty() ? "" : ' ' + unit;
+    }
 
     /// Whether results in two dimensions are those of whole bodies, as of
     /// bodies of revolution, not by length.

@@ -40,7 +40,4 @@ namespace Viscoplastic
 
   /// The first words of the text of every manifest, in all versions.
   extern const std::string first_words_of_manifests;
-
-  std::uint32_t
-  checksum(const std::string &bytes);
 } // namespace Viscoplastic

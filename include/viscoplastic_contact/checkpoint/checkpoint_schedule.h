@@ -33,7 +33,19 @@ namespace Viscoplastic
     /// After step @p n. The last checkpoint of a run is for who adds a phase
     /// later.
     Decision
-    after_step(const unsigned int n, const bool is_last_step, const double now);
+    after_step(const unsigned int n, const bool is_last_step, const double now)
+    {
+      Decision decision;
+      decision.is_due =
+        (wanted.every_n_steps > 0 && n % wanted.every_n_steps == 0) ||
+        (wanted.wall_time_interval > 0. &&
+         now - last_checkpoint >= wanted.wall_time_interval) ||
+        (is_last_step && is_regular());
+      decision.is_late = wanted.wall_time_limit > 0. &&
+                         now + (now - last_step) >= wanted.wall_time_limit;
+      last_step = now;
+      return decision;
+    }
 
     /// A checkpoint has been written.
     void

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
+#include <deal.II/base/utilities.h>
+
 #include <viscoplastic_contact/checkpoint/checkpoint_manifest.h>
 
 #include <mpi.h>
@@ -36,7 +38,10 @@ namespace Viscoplastic
 
     /// The name under which a checkpoint of step @p n is kept.
     std::string
-    path(const unsigned int n) const;
+    path(const unsigned int n) const
+    {
+      return directory + "step_" + dealii::Utilities::int_to_string(n, 6);
+    }
 
     /// Make the directory, so that a place that cannot be had shows at once.
     void
@@ -75,7 +80,10 @@ namespace Viscoplastic
 
     /// Remove all checkpoints.
     Removal
-    remove_all() const;
+    remove_all() const
+    {
+      return remove_others(0, 0);
+    }
 
   private:
     /// A directory with a name that checkpoints have, be they valid or not.

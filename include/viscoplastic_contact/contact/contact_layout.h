@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
+#include <deal.II/base/mpi.h>
 #include <deal.II/base/tensor.h>
 #include <deal.II/lac/vector.h>
 
@@ -125,20 +126,33 @@ namespace Viscoplastic
     /// y := y + factor x for face vectors. (Vector's own operations refuse
     /// empty ones, which are ordinary here.)
     void
-    add(const double factor, const Vector<double> &x, Vector<double> &y) const;
+    add(const double factor, const Vector<double> &x, Vector<double> &y) const
+    {
+      for (unsigned int k = 0; k < n_dofs(); ++k)
+        y[k] += factor * x[k];
+    }
 
     /// A sum over all ranks of what each adds to it. Collective, as the
     /// next ones.
     double
-    sum(const double part) const;
+    sum(const double part) const
+    {
+      return Utilities::MPI::sum(part, communicator);
+    }
 
     /// Whether something holds on some rank.
     bool
-    any(const bool here) const;
+    any(const bool here) const
+    {
+      return Utilities::MPI::max(here ? 1 : 0, communicator) == 1;
+    }
 
     /// The scalar product of two face vectors.
     double
-    dot(const Vector<double> &x, const Vector<double> &y) const;
+    dot(const Vector<double> &x, const Vector<double> &y) const
+    {
+      return sum(x.size() > 0 ? x * y : 0.);
+    }
   };
 
 
@@ -264,28 +278,64 @@ namespace Viscoplastic
 
     /// Whether another one blocks the same. Collective, as the next.
     bool
-    blocks_as(const FaceTruncation &other, const ContactLayout &face) const;
+    blocks_as(const FaceTruncation &other, const ContactLayout &face) const
+    {
+      return !face.any(projector != other.projector);
+    }
 
     bool
-    is_same_as(const FaceTruncation &other, const ContactLayout &face) const;
+    is_same_as(const FaceTruncation &other, const ContactLayout &face) const
+    {
+      return !face.any(projector != other.projector || spring != other.spring);
+    }
 
     bool
-    has_springs(const ContactLayout &face) const;
+    has_springs(const ContactLayout &face) const
+    {
+      bool here = false;
+      for (const Tensor<2, 3> &block : spring)
+        here |= block.norm() > 0.;
+      return face.any(here);
+    }
 
     /// Throw ExcMessage if it is that of another face.
     void
-    check_belongs_to(const ContactLayout &face) const;
+    check_belongs_to(const ContactLayout &face) const
+    {
+      AssertThrow(!face.any(projector.size() != face.n_nodes() ||
+                            spring.size() != face.n_nodes()),
+                  ExcMessage(
+                    "The state of the preconditioner belongs to another "
+                    "contact face."));
+    }
 
     /// x := projector x, node by node.
     void
-    project(const ContactLayout &face, Vector<double> &x) const;
+    project(const ContactLayout &face, Vector<double> &x) const
+    {
+      // Twice: what rounding leaves beside the space of large forces that are
+      // blocked, no iteration on the space takes away.
+      for (unsigned int n = 0; n < face.n_nodes(); ++n)
+        face.set_node_values(
+          projector[n] * (projector[n] * face.node_values(x, n)), n, x);
+    }
 
     /// x := tilt x of equations x, and x := tilt^T x of motions if the system
     /// is transposed.
     void
-    tilt_equations(const ContactLayout &face, Vector<double> &x) const;
+    tilt_equations(const ContactLayout &face, Vector<double> &x) const
+    {
+      if (!transposed)
+        for (unsigned int n = 0; n < tilt.size(); ++n)
+          face.set_node_values(tilt[n] * face.node_values(x, n), n, x);
+    }
 
     void
-    tilt_motions(const ContactLayout &face, Vector<double> &x) const;
+    tilt_motions(const ContactLayout &face, Vector<double> &x) const
+    {
+      if (transposed)
+        for (unsigned int n = 0; n < tilt.size(); ++n)
+          face.set_node_values(face.node_values(x, n) * tilt[n], n, x);
+    }
   };
 } // namespace Viscoplastic

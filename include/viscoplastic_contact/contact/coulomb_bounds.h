@@ -5,11 +5,24 @@
 #include <viscoplastic_contact/contact/coulomb_law.h>
 
 #include <limits>
+#include <optional>
 #include <string>
 #include <vector>
 
 namespace Viscoplastic
 {
+  /// The relaxation factor of friction bounds that follow what they miss, by
+  /// Aitken's rule (Irons and Tuck, Int. J. Numer. Methods Eng. 1, 1969): after
+  /// a move by @p factor times @p last_missing they miss @p missing. Nothing
+  /// where these are equal. Collective.
+  std::optional<double>
+  aitken_factor(const ContactLayout       &face,
+                const double               factor,
+                const std::vector<double> &last_missing,
+                const std::vector<double> &missing);
+
+
+
   /// The bounds of Coulomb's law in the iterations of a contact solver. As a
   /// rule they follow the pressures at once: nodes are solved with the law
   /// itself, and the linear system knows that bounds change with pressures.

@@ -2,7 +2,7 @@
 #pragma once
 
 #include <viscoplastic_contact/contact/contact_layout.h>
-#include <viscoplastic_contact/contact/coulomb_coefficients.h>
+#include <viscoplastic_contact/contact/node_forces.h>
 
 #include <functional>
 #include <optional>
@@ -54,7 +54,14 @@ namespace Viscoplastic
 
     /// This law with the coefficients mu_ck multiplied by @p part.
     CoulombLaw
-    with_part(double part) const;
+    with_part(double part) const
+    {
+      CoulombLaw result(*this);
+      for (std::vector<double> &coefficients : result.of_pressure)
+        for (double &coefficient : coefficients)
+          coefficient *= part;
+      return result;
+    }
 
     /// The largest sum of coefficients at a point. Collective.
     double
@@ -76,4 +83,36 @@ namespace Viscoplastic
                  const Tensor<1, 3>  &force,
                  const ContactState  &state) const;
   };
+
+
+
+  /// A node by itself on a foundation with Coulomb's law: without contact it
+  /// would move by `free_motion`, first along the normal of the foundation as
+  /// far as it is beyond it, then along it; forces against these motions take
+  /// `flexibility` times as much of it.
+  struct CoulombNode
+  {
+    Tensor<2, 3> flexibility;
+    Tensor<1, 3> free_motion;
+    unsigned int n_tangents;
+    /// The bound of friction is `given` + `coefficient` p.
+    double                  given, coefficient;
+    const NormalCompliance &compliance;
+    /// The force at which the node is now; zero where it does not touch.
+    double present;
+  };
+
+  /// The force p of the node on the foundation. Friction of a given p is known
+  /// in closed form (solve_friction_point()); then p is the root of a scalar
+  /// function, the penetration that is left at p less that at which the
+  /// foundation presses by p. There is always a solution: for p = 0 the node is
+  /// beyond the foundation if it is not open, and where p is large friction
+  /// holds it. In 2D on a rigid foundation the root of slip is
+  ///
+  ///     p = (q_n -+ W_nt g)/(W_nn +- mu W_nt).
+  ///
+  /// For a large mu a node that could be open may be held, or slip, as well.
+  /// Then it stays what it is: touching if it touches now, otherwise open.
+  double
+  coulomb_pressure(const CoulombNode &node);
 } // namespace Viscoplastic

@@ -4,10 +4,38 @@
 #include <deal.II/lac/full_matrix.h>
 
 #include <viscoplastic_contact/contact/contact_layout.h>
-#include <viscoplastic_contact/contact/coulomb_coefficients.h>
+
+#include <vector>
 
 namespace Viscoplastic
 {
+  /// The coefficients of friction bounds that depend on the pressures p_k >= 0
+  /// of the obstacles of the same node:
+  ///
+  ///     rho_c = g_c + sum_k mu_ck p_k
+  struct CoulombCoefficients
+  {
+    /// g_c, point by point; of no meaning for obstacles.
+    std::vector<double> given;
+    /// mu_ck, in the order of the obstacles of the node.
+    std::vector<std::vector<double>> of_pressure;
+
+    /// The bound of a point of friction at the pressures of @p state.
+    double
+    bound(const ContactLayout &face,
+          const ContactState  &state,
+          const unsigned int   point) const
+    {
+      double       result = given[point];
+      unsigned int o      = face.first_obstacle(face.points[point].node);
+      for (const double coefficient : of_pressure[point])
+        result += coefficient * state.multiplier[o++][0];
+      return result;
+    }
+  };
+
+
+
   /// The forces of the points at a node where pieces meet. What holds the node
   /// makes up for a force as far as the laws of its points allow: pressures
   /// p >= 0, friction in the ball |lambda| <= rho, or with Coulomb's law in the
@@ -83,7 +111,8 @@ namespace Viscoplastic
     std::vector<Tensor<1, 3>>
     springs_of_force(const PressureChanges &changes) const;
 
-    /// Whether friction at a point has the direction of a slip.
+    /// Whether a point slips, so that its friction has the direction of the
+    /// slip.
     bool
     slips(const unsigned int p) const
     {

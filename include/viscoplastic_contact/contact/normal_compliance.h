@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
+#include <cmath>
 #include <vector>
 
 namespace Viscoplastic
@@ -13,7 +14,10 @@ namespace Viscoplastic
   public:
     /// Add a piece: k = int c phi >= 0 in force per length^m, and m >= 1.
     void
-    add(const double stiffness, const double exponent);
+    add(const double stiffness, const double exponent)
+    {
+      pieces.push_back({stiffness, exponent});
+    }
 
     /// Whether there is no piece that gives way.
     bool
@@ -23,15 +27,38 @@ namespace Viscoplastic
     }
 
     double
-    force(const double w) const;
+    force(const double w) const
+    {
+      double sum = 0.;
+      if (w > 0.)
+        for (const Piece &piece : pieces)
+          sum += piece.stiffness * std::pow(w, piece.exponent);
+      return sum;
+    }
 
     /// p'(w).
     double
-    slope(const double w) const;
+    slope(const double w) const
+    {
+      double sum = 0.;
+      if (w > 0.)
+        for (const Piece &piece : pieces)
+          sum +=
+            piece.exponent * piece.stiffness * std::pow(w, piece.exponent - 1.);
+      return sum;
+    }
 
     /// int_0^w p.
     double
-    energy(const double w) const;
+    energy(const double w) const
+    {
+      double sum = 0.;
+      if (w > 0.)
+        for (const Piece &piece : pieces)
+          sum += piece.stiffness * std::pow(w, piece.exponent + 1.) /
+                 (piece.exponent + 1.);
+      return sum;
+    }
 
     /// The penetration at a force p > 0.
     double

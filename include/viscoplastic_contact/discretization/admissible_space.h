@@ -121,7 +121,13 @@ namespace Viscoplastic
     /// nodes, and the axial ones.
     void
     get_dofs(const typename DoFHandler<dim>::active_cell_iterator &cell,
-             std::vector<types::global_dof_index>                 &dofs) const;
+             std::vector<types::global_dof_index>                 &dofs) const
+    {
+      dofs.resize(dof_handler.get_fe().n_dofs_per_cell());
+      cell->get_dof_indices(dofs);
+      for (unsigned int d = 0; axial && d < dim; ++d)
+        dofs.push_back(dof_handler.n_dofs() + d);
+    }
 
     /// Degrees of freedom on the mesh that this one is refined from; 0 where it
     /// is not refined. The same on all ranks.
@@ -148,9 +154,15 @@ namespace Viscoplastic
 
     /// A vector of owned entries, and one with ghosts on `relevant`.
     DistributedVector
-    owned_vector() const;
+    owned_vector() const
+    {
+      return DistributedVector(owned, communicator);
+    }
     DistributedVector
-    ghosted_vector() const;
+    ghosted_vector() const
+    {
+      return DistributedVector(owned, relevant, communicator);
+    }
 
     /// Add @p cartesian, sums over the owned cells in the order of `relevant`,
     /// to a load vector in frames: hanging nodes pass their share on.
@@ -174,7 +186,11 @@ namespace Viscoplastic
     /// Interpolate hanging nodes of a Cartesian vector of owned entries.
     /// Collective.
     void
-    distribute_hanging_nodes(DistributedVector &cartesian) const;
+    distribute_hanging_nodes(DistributedVector &cartesian) const
+    {
+      if (any_hanging)
+        hanging_cartesian.distribute(cartesian);
+    }
 
     /// The inverse, into a vector of owned entries, zero at hanging nodes.
     void
@@ -236,7 +252,12 @@ namespace Viscoplastic
 
     /// Set the entries that are no unknowns to zero.
     void
-    restrict_to_unknowns(DistributedVector &in_frames) const;
+    restrict_to_unknowns(DistributedVector &in_frames) const
+    {
+      for (std::size_t i = 0; i < is_excluded.size(); ++i)
+        if (is_excluded[i])
+          in_frames.begin()[i] = 0.;
+    }
 
     /// A node with conditions or contact points on the boundary, owned by this
     /// rank.
@@ -309,7 +330,15 @@ namespace Viscoplastic
                  const bool               also_where_held = false) const;
     /// Whether a node of a cell has something opposite.
     bool
-    is_coupled(const std::vector<types::global_dof_index> &dofs) const;
+    is_coupled(const std::vector<types::global_dof_index> &dofs) const
+    {
+      if (couplings.empty())
+        return false;
+      for (std::size_t a = 0; a < dofs.size(); a += dim)
+        if (coupled_nodes[relevant.index_within_set(dofs[a]) / dim])
+          return true;
+      return false;
+    }
     /// Replace a cell matrix by that of the jumps, in the degrees of freedom of
     /// the cell and opposite.
     void
@@ -321,12 +350,24 @@ namespace Viscoplastic
            FullMatrix<double>                         &cell_matrix) const;
     void
     check_rigid_motions();
+    /// Number the parts of the body that owned nodes are of; returns these
+    /// numbers with ghosts, at the first entry of each node. Collective.
+    DistributedVector
+    number_parts(const std::vector<unsigned int> &part_of_coarse_cell);
     /// One of the rigid motions of a part, or of all, in frames. Collective.
     DistributedVector
     rigid_motion(const unsigned int motion, const unsigned int part) const;
     /// The mean position of the nodes. Collective.
     Point<dim>
-    center() const;
+    center() const
+    {
+      Tensor<1, dim> sum;
+      const double   count = node_position.size();
+      for (const auto &x : node_position)
+        sum += x;
+      return Point<dim>(Utilities::MPI::sum(sum, communicator) /
+                        Utilities::MPI::sum(count, communicator));
+    }
 
     /// The rigid motions that only contact can prevent: of each of the parts
     /// that move by themselves, translations and rotations times `radius`, the

@@ -50,7 +50,13 @@ namespace Viscoplastic
     /// The number of points of friction, or of obstacles, on all ranks.
     /// Collective.
     types::global_dof_index
-    n_global_points(const bool of_obstacles = false) const;
+    n_global_points(const bool of_obstacles = false) const
+    {
+      types::global_dof_index n = 0;
+      for (const ContactLayout::Point &point : layout().points)
+        n += point.is_obstacle == of_obstacles;
+      return Utilities::MPI::sum(n, space.communicator);
+    }
 
     /// The slip rate of each point, relative to its foundation, for the mean
     /// velocity between two times (Cartesian, with ghosts). Empty if no
@@ -105,7 +111,8 @@ namespace Viscoplastic
     MissedBounds
     missed_bounds(const State<dim> &state) const;
 
-    /// Whether there are such bounds on any rank.
+    /// Whether any friction bound is that of the computed pressure, on any
+    /// rank.
     bool
     has_computed_pressure() const
     {
@@ -165,13 +172,22 @@ namespace Viscoplastic
       return nodes[node].first_dof;
     }
 
-    /// Cartesian force of a multiplier (lambda; the body feels its negative).
+    /// The Cartesian force of the multiplier lambda of a point; the body feels
+    /// its negative.
     Tensor<1, dim>
     cartesian(const unsigned int point, const Tensor<1, 2> &multiplier) const;
 
     /// sum_c lambda_c of friction, or of obstacles. Collective.
     Tensor<1, dim>
-    resultant(const ContactState &state, const bool of_obstacles = false) const;
+    resultant(const ContactState &state, const bool of_obstacles = false) const
+    {
+      const ContactLayout &face = layout();
+      Tensor<1, dim>       sum;
+      for (unsigned int p = 0; p < face.points.size(); ++p)
+        if (face.points[p].is_obstacle == of_obstacles)
+          sum += cartesian(p, state.multiplier[p]);
+      return Utilities::MPI::sum(sum, space.communicator);
+    }
 
     /// The part of the force of a point that is on a boundary, by its area; 1
     /// where no other one has contact points.
@@ -196,7 +212,14 @@ namespace Viscoplastic
     /// The sum of all of them that act on rigid foundations, not on other
     /// bodies. Collective.
     Tensor<1, dim>
-    resultant_on_foundations(const ContactState &state) const;
+    resultant_on_foundations(const ContactState &state) const
+    {
+      Tensor<1, dim> sum;
+      for (unsigned int p = 0; p < layout().points.size(); ++p)
+        if (!space.scene.boundary.at(boundary_ids[p].front()).against)
+          sum += cartesian(p, state.multiplier[p]);
+      return Utilities::MPI::sum(sum, space.communicator);
+    }
 
     /// The tangential increment of displacement of each point's foundation
     /// between two times (ContactState::foundation_step). Empty if no
@@ -266,6 +289,8 @@ namespace Viscoplastic
     make_nodes();
     void
     make_shares();
+    void
+    make_weights();
     void
     make_compliance();
     void

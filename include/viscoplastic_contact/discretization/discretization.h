@@ -2,21 +2,36 @@
 #pragma once
 
 #include <viscoplastic_contact/discretization/contact_face.h>
-#include <viscoplastic_contact/discretization/contact_tension.h>
+#include <viscoplastic_contact/discretization/contact_limits.h>
 #include <viscoplastic_contact/discretization/elasticity.h>
 #include <viscoplastic_contact/discretization/flow_laws.h>
 #include <viscoplastic_contact/discretization/held_traction.h>
-#include <viscoplastic_contact/discretization/interface_slide.h>
 #include <viscoplastic_contact/discretization/loads.h>
 #include <viscoplastic_contact/discretization/springs.h>
 #include <viscoplastic_contact/discretization/stress_space.h>
 #include <viscoplastic_contact/linear_solvers/solver_choice.h>
+#include <viscoplastic_contact/scene/scene.h>
 
 #include <memory>
 #include <vector>
 
 namespace Viscoplastic
 {
+  /// Whether full integration may lock: with laws whose flow is deviatoric, or
+  /// where the largest Poisson's ratio is @p max_nu > 0.4.
+  template <int dim>
+  bool
+  may_lock(const Scene<dim> &scene, const double max_nu);
+
+  /// Whether the volumetric strain is the mean over each cell: as the scene
+  /// says, or by what `automatic' stands for where the largest Poisson's ratio
+  /// is @p max_nu.
+  template <int dim>
+  bool
+  uses_mean_dilatation(const Scene<dim> &scene, const double max_nu);
+
+
+
   /// A scene on one mesh: everything that depends on the mesh but neither on
   /// the state nor on how steps are solved. Declared in the order of
   /// dependence; made anew when the mesh changes.

@@ -6,8 +6,8 @@
 #include <deal.II/base/mpi.h>
 #include <deal.II/numerics/rtree.h>
 
-#include <viscoplastic_contact/discretization/contact_pair.h>
 #include <viscoplastic_contact/discretization/plane_faces.h>
+#include <viscoplastic_contact/discretization/surface_normals.h>
 #include <viscoplastic_contact/linear_solvers/node_hierarchy.h>
 
 #include <boost/serialization/array.hpp>

@@ -19,13 +19,26 @@ namespace Viscoplastic
 
     /// Collective.
     Tensor<1, dim>
-    value(const DistributedVector &ghosted_u) const;
+    value(const DistributedVector &ghosted_u) const
+    {
+      Tensor<1, dim> result;
+      if (is_mine)
+        for (unsigned int v = 0; v < n_vertices; ++v)
+          for (unsigned int d = 0; d < dim; ++d)
+            result[d] += shape_values[v] * ghosted_u.begin()[nodes[v] + d];
+      return Utilities::MPI::sum(result, communicator);
+    }
 
     /// Add what a force at the point does to the nodes of its cell, to a vector
     /// in the order of `relevant`.
     void
-    add_force(const Tensor<1, dim> &force,
-              std::vector<double>  &cartesian) const;
+    add_force(const Tensor<1, dim> &force, std::vector<double> &cartesian) const
+    {
+      if (is_mine)
+        for (unsigned int v = 0; v < n_vertices; ++v)
+          for (unsigned int d = 0; d < dim; ++d)
+            cartesian[nodes[v] + d] += shape_values[v] * force[d];
+    }
 
   private:
     static constexpr unsigned int n_vertices =

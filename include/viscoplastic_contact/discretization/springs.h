@@ -24,7 +24,13 @@ namespace Viscoplastic
     /// The integral of the trace of K: what the springs are beside the sum of
     /// the diagonal of a matrix. Collective.
     double
-    total_stiffness() const;
+    total_stiffness() const
+    {
+      double sum = 0.;
+      for_each_point(
+        [&sum](const Face &, const auto &, const auto &K) { sum += trace(K); });
+      return Utilities::MPI::sum(sum, space.communicator);
+    }
 
     /// Add the form, times a factor, to a matrix in frames. Collective.
     void
@@ -64,7 +70,12 @@ namespace Viscoplastic
     /// faces.
     template <typename Visitor>
     void
-    for_each_point(const Visitor &visit) const;
+    for_each_point(const Visitor &visit) const
+    {
+      for (const Face &face : faces)
+        for (unsigned int q = 0; q < n_points; ++q)
+          visit(face, shape_values[face.number][q], face.stiffness[q]);
+    }
 
     /// u at a point with these shape functions.
     Tensor<1, dim>

@@ -98,7 +98,15 @@ namespace Viscoplastic
 
     /// The mean of a cell's samples: the projection to piecewise constants.
     SymmetricTensor<2, 3>
-    mean(const std::size_t cell, const SymmetricTensor<2, 3> *samples) const;
+    mean(const std::size_t cell, const SymmetricTensor<2, 3> *samples) const
+    {
+      if (n_samples == 1)
+        return samples[0];
+      SymmetricTensor<2, 3> result;
+      for (unsigned int s = 0; s < n_samples; ++s)
+        result += samples[s] * (weight(cell, s) / volumes[cell]);
+      return result;
+    }
 
     /// sigma = E eps(u) + z, cell means; @p z may be empty (no viscosity).
     std::vector<SymmetricTensor<2, 3>>

@@ -32,9 +32,9 @@ namespace Viscoplastic
       std::vector<double> temperature, strain;
     };
 
-    /// Evaluates the temperature, or gives what it was when asked last. Throws
-    /// ExcMessage where it has no value, or is not an absolute one but has to
-    /// be. Collective.
+    /// The temperature and thermal strain at the samples at time t, kept until
+    /// another time is asked for. Throws ExcMessage where the temperature has no
+    /// value, or is not absolute but has to be. Collective.
     std::shared_ptr<const Samples>
     at(const double t) const;
 
@@ -45,7 +45,8 @@ namespace Viscoplastic
     /// Whether z is nothing but the thermal stress.
     const bool is_alone;
 
-    /// Whether the temperature is another one somewhere. Collective.
+    /// Whether the temperature at time t differs from that at @p t_old at some
+    /// sample. Collective.
     bool
     changes(const double t_old, const double t) const;
 
@@ -56,7 +57,8 @@ namespace Viscoplastic
                const double        factor,
                IrreversibleStress &stress) const;
 
-    /// Let z, which is that of time @p t_old, follow to time t. Collective.
+    /// Change z of time @p t_old by what the thermal stress changes up to time
+    /// t. Collective.
     void
     follow(const double t_old, const double t, IrreversibleStress &z) const;
 

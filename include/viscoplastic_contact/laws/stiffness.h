@@ -68,7 +68,8 @@ namespace Viscoplastic
     double
     complementary_square(const SymmetricTensor<2, 3> &stress) const;
 
-    /// mu, unit of stress; of an anisotropic tensor Voigt's average.
+    /// The shear modulus mu, in the unit of stress; of an anisotropic tensor
+    /// Voigt's average.
     double
     shear_modulus() const;
 

@@ -194,7 +194,7 @@ namespace Viscoplastic
       return has_parameters_of_temperature();
     }
 
-    /// Whether that has to be an absolute one.
+    /// Whether the temperature that the law depends on has to be absolute.
     virtual bool
     needs_absolute_temperature() const
     {

@@ -99,7 +99,11 @@ namespace Viscoplastic
     /// Where an entry, given by its path, has been set last, as messages name
     /// it: file and line, or the assignment. Empty if it has its default.
     std::string
-    origin_of(const std::string &path) const;
+    origin_of(const std::string &path) const
+    {
+      const auto origin = origins.find(path);
+      return origin == origins.end() ? "" : origin->second;
+    }
 
     /// All entries again, from which laws read their parameters.
     mutable ParameterHandler handler;

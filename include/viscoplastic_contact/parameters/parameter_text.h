@@ -30,7 +30,11 @@ namespace Viscoplastic
 
     /// "'scene.prm', line 3" or "--set 'Time/Phases=1: 4'", for messages.
     std::string
-    origin() const;
+    origin() const
+    {
+      return number == 0 ? source :
+                           "'" + source + "', line " + std::to_string(number);
+    }
   };
 
   /// What ParameterHandler is to read: the statements of some files, with those

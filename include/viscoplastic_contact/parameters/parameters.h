@@ -209,9 +209,8 @@ namespace Viscoplastic
     /// The column of statistics.csv whose error is controlled; empty for the
     /// energy norm.
     std::string quantity;
-    bool        error_estimator      = true;
-    double      algebraic_fraction   = 0.05;
-    bool        two_level_comparison = false;
+    bool        error_estimator    = true;
+    double      algebraic_fraction = 0.05;
 
     /// Whether the run chooses meshes and steps to a tolerance.
     bool

@@ -25,7 +25,13 @@ namespace Viscoplastic
     explicit TimeSchedule(const std::string &phases);
 
     unsigned int
-    n_steps() const;
+    n_steps() const
+    {
+      unsigned int n = 0;
+      for (const Phase &phase : phases)
+        n += phase.n_steps;
+      return n;
+    }
 
     /// 1 <= n <= n_steps().
     TimeStep
@@ -39,7 +45,13 @@ namespace Viscoplastic
 
     /// The phase, counted from 1, that ends at time t; 0 if none.
     unsigned int
-    phase_ending_at(const double t) const;
+    phase_ending_at(const double t) const
+    {
+      for (unsigned int i = 0; i < phases.size(); ++i)
+        if (phases[i].end == t)
+          return i + 1;
+      return 0;
+    }
 
     /// A phase and what it asks for.
     struct Phase
@@ -87,15 +99,7 @@ namespace Viscoplastic
   std::vector<StepsUntil>
   read_phases(const std::string &phases);
 
-  /// Every phase with @p factor times its steps, rounded up.
-  std::vector<StepsUntil>
-  scale_phases(std::vector<StepsUntil> phases, const double factor);
-
   /// The phases as `Time/Phases' has them.
   std::string
   write_phases(const std::vector<StepsUntil> &phases);
-
-  /// The steps of all phases together.
-  unsigned int
-  n_steps(const std::vector<StepsUntil> &phases);
 } // namespace Viscoplastic

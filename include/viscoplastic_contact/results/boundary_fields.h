@@ -4,6 +4,7 @@
 #include <viscoplastic_contact/discretization/contact_face.h>
 #include <viscoplastic_contact/results/body_fields.h>
 
+#include <algorithm>
 #include <map>
 #include <set>
 #include <string>
@@ -28,15 +29,26 @@ namespace Viscoplastic
                    const std::set<RecordedField> &fields);
 
     /// The fields of Gamma_3 that the output of a scene has, but for the
-    /// displacement. @p face: as above.
+    /// displacement. @p face is null without contact points.
     static std::set<RecordedField>
     of_output(const Scene<dim> &scene, const ContactFace<dim> *face);
 
     /// The name of a field in outputs.
     static std::string
-    name(const RecordedField field);
+    name(const RecordedField field)
+    {
+      std::string name = name_of(field);
+      std::replace(name.begin(), name.end(), ' ', '_');
+      return name;
+    }
     static bool
-    is_vector(const RecordedField field);
+    is_vector(const RecordedField field)
+    {
+      return field == RecordedField::slip ||
+             field == RecordedField::slip_rate ||
+             field == RecordedField::traction ||
+             field == RecordedField::stress_vector;
+    }
 
     /// The names of the values; vectors have one for each component.
     static std::vector<std::string>

@@ -28,7 +28,11 @@ namespace Viscoplastic
     /// The body is on another mesh now, which stays in use. The points are
     /// looked for at the next output.
     void
-    set_mesh(const Discretization<dim> &discretization);
+    set_mesh(const Discretization<dim> &on_mesh)
+    {
+      discretization = &on_mesh;
+      probes.clear();
+    }
 
     /// Begin the files anew in a directory. Collective. Throws ExcMessage if
     /// they cannot be written, as the other functions do.
@@ -50,7 +54,7 @@ namespace Viscoplastic
     synchronize();
 
   private:
-    /// The names of the files for writing on rank 0, none on others.
+    /// Set the names of the files that rank 0 writes; other ranks have none.
     void
     name_files(const std::string &directory);
 

@@ -75,7 +75,11 @@ namespace Viscoplastic
     /// Wait for the files of the last output. Throws ExcMessage if they could
     /// not be written. On all ranks.
     void
-    finish();
+    finish()
+    {
+      if (writing.valid())
+        writing.get();
+    }
 
     /// Throw ExcMessage if it is known by now that the files of the last output
     /// cannot be written.

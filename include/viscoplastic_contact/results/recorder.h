@@ -11,7 +11,6 @@
 #include <viscoplastic_contact/error/solution_errors.h>
 #include <viscoplastic_contact/results/acting_effects.h>
 #include <viscoplastic_contact/results/energy_balance.h>
-#include <viscoplastic_contact/results/field_integrals.h>
 #include <viscoplastic_contact/results/field_probes.h>
 #include <viscoplastic_contact/results/run_summary.h>
 #include <viscoplastic_contact/results/statistics.h>
@@ -111,10 +110,9 @@ namespace Viscoplastic
     std::vector<std::string>
     remarks(const State<dim> &state) const;
 
-    /// The closing words but for the remarks. @p coarser: of a run with twice
-    /// the mesh width and time steps, or null. On all ranks.
+    /// The closing words but for the remarks. On all ranks.
     void
-    print(std::ostream &out, const RunSummary<dim> *coarser) const;
+    print(std::ostream &out) const;
 
     const RunSummary<dim> &
     summary() const
@@ -125,7 +123,13 @@ namespace Viscoplastic
     /// Wall time of this process by phase, as run_phases names them; `set-up'
     /// is that of the first mesh, later ones are part of the adaptation.
     std::map<std::string, double>
-    seconds() const;
+    seconds() const
+    {
+      auto result = timer.get_summary_data(TimerOutput::total_wall_time);
+      if (pilot_seconds > 0.)
+        result["pilot run"] += pilot_seconds;
+      return result;
+    }
 
     /// The wall time that effects of the scene have taken so far.
     RunBill

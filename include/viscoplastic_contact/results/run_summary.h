@@ -20,6 +20,47 @@
 
 namespace Viscoplastic
 {
+  /// A part of a run whose wall time is taken by itself.
+  struct RunPhase
+  {
+    /// The name of the section of the timer of a run.
+    std::string name;
+    /// What it is paid for, and what that is, for the lines at the end of a
+    /// run.
+    std::string effect, text;
+    /// Whether statistics.csv has its seconds in each step, as wall_<name>.
+    bool is_in_statistics;
+  };
+
+  /// All phases, in the order in which they are printed and written.
+  inline const std::vector<RunPhase> run_phases{
+    {"pilot run",
+     "pilot run",
+     "of the tolerance: the size of the solution, the mesh of a quantity",
+     false},
+    {"set-up", "set-up", "spaces, matrix, factorization or multigrid", false},
+    {"rate", "viscosity", "flow of the law in all cells", true},
+    {"tangent",
+     "backward Euler",
+     "matrices of the steps with their set-up",
+     true},
+    {"load", "data", "loads, friction bounds, motion of foundations", true},
+    {"contact",
+     "elasticity",
+     "linear solves, as they would be without friction",
+     true},
+    {"balance", "balance", "energies, reactions, statistics.csv", true},
+    {"estimate",
+     "error estimate",
+     "of the mesh, of steps and iterations",
+     true},
+    {"adaptation", "adaptivity", "new meshes with their set-up", false},
+    {"output", "fields", "for ParaView", true},
+    {"errors", "comparison", "with an exact solution or a reference", false},
+    {"checkpoint", "checkpoints", "to go on from", false}};
+
+
+
   using namespace dealii;
 
   /// The largest value over a run, and when it was reached.
@@ -27,7 +68,7 @@ namespace Viscoplastic
   {
     double value = 0., t = 0.;
 
-    /// Whether the new value is larger.
+    /// Take a value that is larger than those before; returns whether it is.
     bool
     update(const double new_value, const double new_t)
     {
@@ -115,27 +156,11 @@ namespace Viscoplastic
     /// that; zero without one.
     SolutionNorms largest_error, largest_exact;
 
-    /// @p coarser: of a run with twice the mesh width and twice the time steps,
-    /// or null. The difference is the uncertainty of each quantity, by first
-    /// order convergence. Numbers have their units if @p units are declared,
-    /// and places their names.
+    /// Numbers have their units if @p units are declared, and places their
+    /// names.
     void
-    print(std::ostream     &out,
-          const Units      &units,
-          const PlaceNames &names,
-          const RunSummary *coarser = nullptr) const;
+    print(std::ostream &out, const Units &units, const PlaceNames &names) const;
   };
-
-
-
-  /// A table `quantity,value,uncertainty' of the end of a run. Throws
-  /// ExcMessage if it cannot be written.
-  template <int dim>
-  void
-  write_uncertainties(const std::string     &file,
-                      const Units           &units,
-                      const RunSummary<dim> &summary,
-                      const RunSummary<dim> &coarser);
 
 
 
@@ -156,7 +181,13 @@ namespace Viscoplastic
     /// The part of the phase `contact' that is friction's. What it is of the
     /// solves of steps that have been accepted, it is of all.
     double
-    friction() const;
+    friction() const
+    {
+      const auto contact = seconds.find("contact");
+      if (!plain_solves || !(solves > 0.) || contact == seconds.end())
+        return 0.;
+      return contact->second * (1. - *plain_solves / solves);
+    }
 
     /// Effects that the scene does not have get no line.
     void

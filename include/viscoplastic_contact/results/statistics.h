@@ -12,20 +12,12 @@ namespace Viscoplastic
   /// What a step has to record: for each quantity its name, its unit, its value
   /// and whether the closing words of a run have it. Recorder::row() makes it,
   /// and so is the one place that knows them; statistics.csv, its labels of
-  /// units, the closing words and uncertainty.csv follow from it.
+  /// units and the closing words follow from it.
   class StatisticsRow
   {
   public:
-    /// The outputs in which the value at the end of a run appears.
-    enum class AtEnd
-    {
-      absent,
-      /// Among the closing words, and in uncertainty.csv.
-      printed,
-      /// In uncertainty.csv, and among the closing words where they have
-      /// uncertainties.
-      compared
-    };
+    /// For add(): the closing words have the value at the end of a run.
+    static constexpr bool printed = true;
 
     /// A number, or the components of a vector.
     struct Entry
@@ -34,7 +26,7 @@ namespace Viscoplastic
       Quantity            quantity;
       std::vector<double> values;
       bool                is_vector;
-      AtEnd               at_end;
+      bool                is_printed;
 
       /// The name of the column of a value: name_x, name_y (, name_z) for
       /// vectors.
@@ -48,10 +40,10 @@ namespace Viscoplastic
     void
     add(const std::string &name,
         const double       value,
-        const Quantity     quantity = Quantity::pure_number,
-        const AtEnd        at_end   = AtEnd::absent)
+        const Quantity     quantity   = Quantity::pure_number,
+        const bool         is_printed = false)
     {
-      entries.push_back({name, quantity, {value}, false, at_end});
+      entries.push_back({name, quantity, {value}, false, is_printed});
     }
 
     template <typename VectorType>
@@ -60,9 +52,9 @@ namespace Viscoplastic
                const VectorType  &value,
                const unsigned int dim,
                const Quantity     quantity,
-               const AtEnd        at_end = AtEnd::absent)
+               const bool         is_printed = false)
     {
-      entries.push_back({name, quantity, {}, true, at_end});
+      entries.push_back({name, quantity, {}, true, is_printed});
       for (unsigned int d = 0; d < dim; ++d)
         entries.back().values.push_back(value[d]);
     }

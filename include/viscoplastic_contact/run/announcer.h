@@ -47,7 +47,13 @@ namespace Viscoplastic
 
     /// @p name may be empty, as long as there is no solver.
     void
-    announce_solver(const std::string &name);
+    announce_solver(const std::string &name)
+    {
+      if (name.empty() || name == solver)
+        return;
+      solver = name;
+      console.stream() << "Linear solver: " << solver << std::endl;
+    }
 
   private:
     /// Where data contradict each other at the end of a phase. Collective.

@@ -4,7 +4,6 @@
 #include <viscoplastic_contact/run/viscoplastic_contact.h>
 
 #include <string>
-#include <vector>
 
 namespace Viscoplastic
 {
@@ -27,20 +26,5 @@ namespace Viscoplastic
   std::string
   run_in_passes(const Parameters          &parameters,
                 Console                   &console,
-                const CommandLine::Restart restart,
-                const RunSummary<dim>     *coarser);
-
-  /// The assignments `Section/Entry=value' that make a scene coarser: one
-  /// refinement less, on adaptive meshes also of the least and the finest
-  /// cells, and half the steps of every phase, but at least one. Throws
-  /// ExcMessage if `Geometry/Global refinements' is 0.
-  std::vector<std::string>
-  coarser_scene(const Parameters &parameters);
-
-  /// Run the coarser scene without a word and without files. Throws ExcMessage
-  /// as a run does. Collective.
-  template <int dim>
-  RunSummary<dim>
-  run_coarser_scene(const Parameters  &parameters,
-                    const CommandLine &command_line);
+                const CommandLine::Restart restart);
 } // namespace Viscoplastic

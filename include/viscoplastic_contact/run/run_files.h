@@ -57,11 +57,19 @@ namespace Viscoplastic
 
     /// The next functions are about the accepted state on this mesh.
     void
-    set_mesh(const Discretization<dim> &discretization);
+    set_mesh(const Discretization<dim> &discretization)
+    {
+      this->discretization = &discretization;
+      lines.set_mesh(discretization);
+    }
 
     /// From here on signals end the run after a checkpoint only.
     void
-    begin_steps();
+    begin_steps()
+    {
+      schedule.begin_steps(run.recorder.elapsed());
+      signals.emplace();
+    }
 
     /// Write the fields, if they are due after @p step, and values along lines.
     void
@@ -76,13 +84,17 @@ namespace Viscoplastic
 
     /// Wait for files that are being written.
     void
-    finish();
+    finish()
+    {
+      TimerOutput::Scope phase(timer, "output");
+      output->finish();
+      signals.reset();
+    }
 
-    /// Add what is known at the end, the difference from @p coarser (may be
-    /// null), costs and remarks to the record of the run.
+    /// Add what is known at the end, costs and remarks to the record of the
+    /// run.
     void
-    close(const RunSummary<dim>          *coarser,
-          const std::vector<std::string> &remarks);
+    close(const std::vector<std::string> &remarks);
 
   private:
     /// Lock the directories of results and checkpoints, as far as they exist

@@ -62,13 +62,10 @@ namespace Viscoplastic
                         const PilotRun   &pilot_run);
 
     /// Simulate, from the start or from a checkpoint; a pass that needs another
-    /// one ends without closing words. These give
-    /// each quantity with its difference from that of @p coarser, a run with
-    /// twice the mesh width and time steps, unless that is null. Returns a
-    /// sentence if a signal has ended the run early, after a checkpoint.
+    /// one ends without closing words. Returns a sentence if a signal has ended
+    /// the run early, after a checkpoint.
     std::string
-    run(const CommandLine::Restart restart = CommandLine::Restart::no,
-        const RunSummary<dim>     *coarser = nullptr);
+    run(const CommandLine::Restart restart = CommandLine::Restart::no);
 
     /// Run without files and without the words at the beginning, in one pass;
     /// returns what is known at the end.
@@ -103,7 +100,8 @@ namespace Viscoplastic
     /// them.
     void
     set_initial_state();
-    /// Record and write it unless that has been done: at once, or, where the
+    /// Record and write the initial state unless that has been done: at once,
+    /// or, where the
     /// first step may refine the mesh and begin anew, once it has been made.
     void
     record_initial_state();
@@ -145,9 +143,9 @@ namespace Viscoplastic
     /// Go on from a checkpoint: what begin() does, and all steps up to there.
     void
     resume(const CheckpointManifest &checkpoint);
-    /// The closing words.
+    /// Print the closing words and complete the record of the run.
     void
-    close(const RunSummary<dim> *coarser);
+    close();
 
     // What is simulated.
     const MPI_Comm                            communicator;

@@ -121,7 +121,12 @@ namespace Viscoplastic
 
     /// g + d of contact that opens.
     double
-    gap(const Point<dim> &x, const double t) const;
+    gap(const Point<dim> &x, const double t) const
+    {
+      return (given_gap ? given_gap->value(x, t) : 0.) +
+             (foundation_displacement ? foundation_displacement->value(x, t) :
+                                        0.);
+    }
 
     /// Whether nodes have contact points here: friction or obstacles.
     bool
@@ -161,7 +166,13 @@ namespace Viscoplastic
     }
 
     bool
-    load_depends_on_time() const;
+    load_depends_on_time() const
+    {
+      return (traction && traction->depends_on_time()) ||
+             (pressure && pressure->depends_on_time()) ||
+             (normal_stress && normal_stress->depends_on_time()) ||
+             has_derived_traction();
+    }
 
     bool
     has_springs() const
@@ -186,13 +197,26 @@ namespace Viscoplastic
 
     /// The tangential part of w(x,t) - w(x,0); zero at rest.
     Tensor<1, dim>
-    sliding(const Point<dim> &x, const double t) const;
+    sliding(const Point<dim> &x, const double t) const
+    {
+      if (!foundation_motion)
+        return {};
+      const Tensor<1, dim> w =
+        foundation_motion->vector(x, t) - foundation_motion->vector(x, 0.);
+      return w - (w * normal) * normal;
+    }
 
     /// d nu + sliding(), at a point with this normal nu.
     Tensor<1, dim>
     glued_displacement(const Point<dim>     &x,
                        const Tensor<1, dim> &outward_normal,
-                       const double          t) const;
+                       const double          t) const
+    {
+      Tensor<1, dim> u = sliding(x, t);
+      if (foundation_displacement)
+        u += foundation_displacement->value(x, t) * outward_normal;
+      return u;
+    }
 
     /// Whether some displacement component is prescribed here.
     bool
@@ -233,7 +257,17 @@ namespace Viscoplastic
 
     /// Whether bound() or gap() depend on time.
     bool
-    bound_depends_on_time() const;
+    bound_depends_on_time() const
+    {
+      return (friction_bound && friction_bound->depends_on_time()) ||
+             (friction_coefficient &&
+              friction_coefficient->depends_on_time()) ||
+             (normal_stress && normal_stress->depends_on_time()) ||
+             (is_unilateral() &&
+              ((given_gap && given_gap->depends_on_time()) ||
+               (foundation_displacement &&
+                foundation_displacement->depends_on_time())));
+    }
 
   private:
     /// Whether F is sigma nu of the solution.

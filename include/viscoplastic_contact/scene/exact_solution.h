@@ -54,7 +54,10 @@ namespace Viscoplastic
     }
 
     Tensor<1, dim>
-    displacement(const Point<dim> &x, const double t) const;
+    displacement(const Point<dim> &x, const double t) const
+    {
+      return given_displacement->vector(x, t);
+    }
 
     /// grad u: derivatives of component i in row i.
     Tensor<2, dim>
@@ -80,7 +83,15 @@ namespace Viscoplastic
     Tensor<1, dim>
     traction(const Point<dim>     &x,
              const Tensor<1, dim> &normal,
-             const double          t) const;
+             const double          t) const
+    {
+      const SymmetricTensor<2, 3> sigma = stress(x, t);
+      Tensor<1, dim>              result;
+      for (unsigned int i = 0; i < dim; ++i)
+        for (unsigned int j = 0; j < dim; ++j)
+          result[i] += sigma[i][j] * normal[j];
+      return result;
+    }
 
     /// -Div sigma.
     Tensor<1, dim>

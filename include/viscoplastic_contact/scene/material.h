@@ -46,9 +46,14 @@ namespace Viscoplastic
 
     /// Whether stiffness() is the same everywhere.
     bool
-    is_uniform() const;
+    is_uniform() const
+    {
+      return anisotropic || (!youngs_modulus->depends_on_position() &&
+                             !poissons_ratio->depends_on_position());
+    }
 
-    /// alpha at x, 0 for a material that does not expand.
+    /// The coefficient of thermal expansion alpha at x, in 1/temperature; 0 for
+    /// a material that does not expand.
     double
     expansion(const Point<dim> &x) const
     {

@@ -55,7 +55,12 @@ namespace Viscoplastic
 
     /// The name of a place, or `boundary 3' if it has none.
     std::string
-    of(const std::string &kind, const unsigned int number) const;
+    of(const std::string &kind, const unsigned int number) const
+    {
+      const PlaceNumber place{kind, number};
+      const auto        found = names.find(place);
+      return found == names.end() ? place.text() : found->second;
+    }
 
     /// The place that @p name names, or nothing. Numbers are names, too:
     /// `boundary 3'.

@@ -21,8 +21,8 @@ namespace Viscoplastic
   std::vector<Point<dim>>
   places_in_body(const Triangulation<dim> &triangulation);
 
-  /// The values of a datum at places, all at a time; at one place if these do
-  /// not matter.
+  /// The values of a datum at some places at time t; a single one if it does
+  /// not depend on the place.
   template <int dim>
   std::vector<double>
   values_at(const Expression<dim>         &datum,

@@ -14,6 +14,7 @@
 #include <viscoplastic_contact/scene/quantity_of_interest.h>
 #include <viscoplastic_contact/scene/support.h>
 
+#include <algorithm>
 #include <map>
 #include <memory>
 #include <optional>
@@ -43,11 +44,6 @@ namespace Viscoplastic
     /// The effects that this scene has, for the user.
     std::vector<std::string>
     effects() const;
-
-    /// Entries that matter here, are left to the program, and had another
-    /// default in earlier versions, for the user.
-    std::vector<std::string>
-    changed_defaults() const;
 
     /// Known after inspect(), like the effects.
     const Material<dim> &
@@ -103,15 +99,32 @@ namespace Viscoplastic
 
     /// The stage to which a step belongs that ends at time t.
     unsigned int
-    stage_of_step_to(const double t) const;
+    stage_of_step_to(const double t) const
+    {
+      return std::lower_bound(stage_ends.begin(), stage_ends.end(), t) -
+             stage_ends.begin();
+    }
 
     /// Sections of the materials that the present stage does not have.
     std::vector<std::string>
-    absent_materials() const;
+    absent_materials() const
+    {
+      std::vector<std::string> result;
+      for (const auto &[id, material] : material_of_id)
+        if (material->is_absent)
+          result.push_back(material->name);
+      return result;
+    }
 
     /// Let materials come and go, so that those of stage @p n are present.
     void
-    enter_stage(const unsigned int n);
+    enter_stage(const unsigned int n)
+    {
+      present_stage = n;
+      for (const auto &[id, entry] : entries)
+        material_of_id[id] =
+          entry.begin <= n && n < entry.end ? entry.material : entry.absent;
+    }
 
     /// Whether errors are measured against a known solution.
     bool
@@ -124,19 +137,40 @@ namespace Viscoplastic
     /// Whether boundaries are in contact with each other, of bodies that need
     /// not share any face.
     bool
-    has_contact_pairs() const;
+    has_contact_pairs() const
+    {
+      return on_any_boundary(
+        [](const auto &b) { return b.against.has_value(); });
+    }
 
     /// Whether a boundary is what another one is in contact with.
     bool
-    is_other_side(const types::boundary_id id) const;
+    is_other_side(const types::boundary_id id) const
+    {
+      return on_any_boundary([id](const auto &b) { return b.against == id; });
+    }
 
     /// Whether there is a G: laws, or the source of a manufactured solution.
     bool
-    has_viscosity() const;
+    has_viscosity() const
+    {
+      for (const auto &material : materials)
+        if (material->law)
+          return true;
+      return has_source();
+    }
 
     /// Whether a law has history variables.
     bool
-    has_history() const;
+    has_history() const
+    {
+      return std::any_of(materials.begin(),
+                         materials.end(),
+                         [](const auto &material) {
+                           return material->law &&
+                                  material->law->n_history_variables > 0;
+                         });
+    }
 
     /// Whether all steps are of backward Euler; known with the mesh, as the
     /// viscosity is.
@@ -176,7 +210,14 @@ namespace Viscoplastic
 
     /// Whether some material expands with temperature.
     bool
-    has_thermal_strain() const;
+    has_thermal_strain() const
+    {
+      return std::any_of(materials.begin(),
+                         materials.end(),
+                         [](const auto &material) {
+                           return material->thermal_expansion.has_value();
+                         });
+    }
 
     /// Whether it may have done so before t = 0.
     bool
@@ -206,17 +247,32 @@ namespace Viscoplastic
     }
 
     bool
-    has_springs() const;
+    has_springs() const
+    {
+      return on_any_boundary([](const auto &b) { return b.has_springs(); });
+    }
 
     /// The condition on the boundary or support with this @p id.
     const BoundaryCondition<dim> &
-    condition(const types::boundary_id id) const;
+    condition(const types::boundary_id id) const
+    {
+      for (const Support<dim> &support : supports)
+        if (support.condition.id == id)
+          return support.condition;
+      return boundary.at(id);
+    }
 
     bool
-    has_friction() const;
+    has_friction() const
+    {
+      return on_any_boundary([](const auto &b) { return b.has_friction(); });
+    }
 
     bool
-    has_unilateral_contact() const;
+    has_unilateral_contact() const
+    {
+      return on_any_boundary([](const auto &b) { return b.is_unilateral(); });
+    }
 
     /// Whether nodes have contact points: friction or obstacles.
     bool
@@ -237,7 +293,15 @@ namespace Viscoplastic
     /// Whether some friction bound is that of the pressure or the slip rate of
     /// the step before.
     bool
-    has_bounds_of_step_before() const;
+    has_bounds_of_step_before() const
+    {
+      const bool is_lagged =
+        parameters.solver.coulomb_pressure == CoulombPressure::lagged;
+      return on_any_boundary([is_lagged](const auto &b) {
+        return b.has_friction() && (b.slip_rate_factor.has_value() ||
+                                    (is_lagged && b.has_computed_pressure()));
+      });
+    }
 
     /// Whether z is kept at quadrature points, not as cell means.
     bool
@@ -248,14 +312,40 @@ namespace Viscoplastic
     }
 
     bool
-    has_contact() const;
+    has_contact() const
+    {
+      return !contact_boundaries().empty();
+    }
 
     /// The boundary ids with the role contact.
     std::set<types::boundary_id>
-    contact_boundaries() const;
+    contact_boundaries() const
+    {
+      std::set<types::boundary_id> result;
+      for (const auto &[id, condition] : boundary)
+        if (condition.role == BoundaryRole::contact)
+          result.insert(id);
+      return result;
+    }
 
     bool
-    has_moving_foundation() const;
+    has_moving_foundation() const
+    {
+      return on_any_boundary(
+        [](const auto &b) { return b.has_friction() && b.foundation_motion; });
+    }
+
+    /// Whether @p holds (condition) is true on some boundary.
+    template <typename Predicate>
+    bool
+    on_any_boundary(const Predicate &holds) const
+    {
+      return std::any_of(boundary.begin(),
+                         boundary.end(),
+                         [&holds](const auto &pair) {
+                           return holds(pair.second);
+                         });
+    }
 
     /// Whether any output asks for what friction has done per area.
     bool

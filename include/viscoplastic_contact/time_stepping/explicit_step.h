@@ -29,14 +29,24 @@ namespace Viscoplastic
     }
 
     std::optional<PreconditionerState>
-    preconditioner_state() const override;
+    preconditioner_state() const override
+    {
+      return solver.bulk().preconditioner_state();
+    }
 
     void
-    restore(const EvaluatedState<dim>                &accepted,
-            const std::optional<PreconditionerState> &preconditioner) override;
+    restore(const EvaluatedState<dim> & /*accepted*/,
+            const std::optional<PreconditionerState> &preconditioner) override
+    {
+      if (!solver.bulk().is_exact())
+        solver.bulk().restore(preconditioner);
+    }
 
     std::string
-    solver_name() const override;
+    solver_name() const override
+    {
+      return solver.bulk().name();
+    }
 
   private:
     /// (3.20) for the z of @p solution, whose u, sets and report are set; the

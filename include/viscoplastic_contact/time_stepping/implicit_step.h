@@ -54,7 +54,10 @@ namespace Viscoplastic
             const std::optional<PreconditionerState> &preconditioner) override;
 
     std::string
-    solver_name() const override;
+    solver_name() const override
+    {
+      return solver.is_ready() ? solver.bulk().name() : "";
+    }
 
   private:
     class Newton;

@@ -28,7 +28,12 @@ namespace Viscoplastic
 
     /// Add the load of springs that carry nothing at @p u.
     void
-    add_load(const DistributedVector &u, DistributedVector &load) const;
+    add_load(const DistributedVector &u, DistributedVector &load) const
+    {
+      DistributedVector force(springs);
+      force.scale(u);
+      load += force;
+    }
 
     /// The bounds of friction with which a step is solved: @p bounds, raised
     /// where bounds that follow the pressure could hold the body but these
@@ -73,9 +78,29 @@ namespace Viscoplastic
           const HeldBody          &body,
           const DistributedVector &right_side) const;
 
+    /// Move u and the rest of the springs as a whole to where the loads are in
+    /// balance with soft ground. Collective.
+    void
+    settle_whole(const StepProblem<dim>  &problem,
+                 const HeldBody          &body,
+                 const ContactState      &contact,
+                 const DistributedVector &old_u,
+                 DistributedVector       &center,
+                 DistributedVector       &u) const;
+
+    /// Why a body that still moves by @p change does not come to rest, as a
+    /// sentence. Collective.
+    std::string
+    restlessness(DistributedVector change, const double left_by_rounding) const;
+
     /// The norm of a displacement in the springs. Collective.
     double
-    norm(const DistributedVector &u) const;
+    norm(const DistributedVector &u) const
+    {
+      DistributedVector force(springs);
+      force.scale(u);
+      return std::sqrt(std::max(0., u * force));
+    }
 
     /// How many times as far the springs' rest should go as the last solve has
     /// moved the body away from it, by what the last two have taught: the step
@@ -91,7 +116,13 @@ namespace Viscoplastic
     /// The rigid motion, of those that only contact can prevent, nearest to a
     /// displacement. Collective.
     DistributedVector
-    rigid_part(const DistributedVector &u) const;
+    rigid_part(const DistributedVector &u) const
+    {
+      DistributedVector result = discretization.space.owned_vector();
+      for (const DistributedVector &motion : orthonormal_motions)
+        result.add(u * motion, motion);
+      return result;
+    }
 
     const Discretization<dim> &discretization;
     /// The rigid motions that only contact can prevent.

@@ -4,6 +4,7 @@
 #include <viscoplastic_contact/parameters/parameters.h>
 #include <viscoplastic_contact/parameters/time_schedule.h>
 
+#include <algorithm>
 #include <optional>
 #include <stdexcept>
 #include <string>
@@ -196,13 +197,25 @@ namespace Viscoplastic
     /// Whether events of a step from time t count: after a kink of the data
     /// slip may end at once, which says nothing.
     bool
-    is_kink(const double t) const;
+    is_kink(const double t) const
+    {
+      const double near = 1e-9 * schedule.end_time();
+      return t == 0. || schedule.phase_ending_at(t) > 0 ||
+             has_kink_within(t - 2. * near, t) ||
+             std::binary_search(landing_times.begin(), landing_times.end(), t);
+    }
 
     /// Whether data have a kink or jump in (from, to], up to rounding, of which
     /// land_on() has been told: differences of what steps before and after it
     /// have seen say nothing.
     bool
-    has_kink_within(const double from, const double to) const;
+    has_kink_within(const double from, const double to) const
+    {
+      const double near = 1e-9 * schedule.end_time();
+      const auto   later =
+        std::upper_bound(data_kinks.begin(), data_kinks.end(), from + near);
+      return later != data_kinks.end() && *later <= to + near;
+    }
 
     const StepCounts &
     counts() const
@@ -260,11 +273,28 @@ namespace Viscoplastic
                   const StepErrors &errors,
                   const double      size) const;
 
+    /// By how much the next step may be longer than an accepted one of size k,
+    /// whose error is @p ratio times the allowed one. Remembers what it says of
+    /// later ones.
     double
-    smallest(const double t) const;
+    growth_allowed_by(const double ratio, const double k);
 
     double
-    largest(const double t) const;
+    smallest(const double t) const
+    {
+      const auto &phase = schedule.phase_at(t);
+      return parameters.smallest_step > 0. ? parameters.smallest_step :
+                                             1e-6 * (phase.end - phase.start);
+    }
+
+    double
+    largest(const double t) const
+    {
+      const auto &phase = schedule.phase_at(t);
+      if (parameters.largest_step > 0.)
+        return parameters.largest_step;
+      return has_estimate ? phase.end - phase.start : phase.step_size();
+    }
 
     const StepControlParameters &parameters;
     const TimeSchedule          &schedule;

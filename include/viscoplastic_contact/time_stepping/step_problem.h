@@ -101,7 +101,15 @@ namespace Viscoplastic
 
     /// Take notice of G somewhere in the step.
     void
-    note(const FlowRate &rate);
+    note(const FlowRate &rate)
+    {
+      if (rate.relaxation_rate > 0. && 2. / rate.relaxation_rate < step_limit)
+        {
+          step_limit        = 2. / rate.relaxation_rate;
+          critical_position = rate.critical_position;
+        }
+      capped_volume = std::max(capped_volume, rate.capped_volume);
+    }
   };
 
 

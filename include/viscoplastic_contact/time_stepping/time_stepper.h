@@ -19,7 +19,8 @@ namespace Viscoplastic
     /// The number of longer steps that were tried and rejected.
     unsigned int n_rejections = 0;
 
-    /// k r.
+    /// k r, the step size times the relaxation rate: explicit steps are stable
+    /// up to 2.
     double
     stiffness() const
     {
@@ -110,12 +111,20 @@ namespace Viscoplastic
 
     /// Whether steps of this scene ask for G at the state that they start from.
     bool
-    needs_rate() const;
+    needs_rate() const
+    {
+      return scene.has_viscosity() &&
+             (!scene.is_implicit() || error_estimator != nullptr);
+    }
 
     /// The error at which the iterations of a step from a state stop, relative
     /// to the solution.
     double
-    tolerance(const EvaluatedState<dim> &accepted) const;
+    tolerance(const EvaluatedState<dim> &accepted) const
+    {
+      return error_estimator ? error_estimator->tolerance(accepted.errors) :
+                               solver_parameters.strict_tolerance();
+    }
 
     StepMethod<dim> &
     method()

@@ -63,16 +63,6 @@ namespace Viscoplastic
 
 
 
-  void
-  MeshReader::expect(const std::string &keyword)
-  {
-    const std::string found = word(keyword);
-    if (found != keyword)
-      fail("expected " + keyword + ", found " + quoted(found));
-  }
-
-
-
   long
   MeshReader::integer(const std::string &what)
   {
@@ -111,24 +101,6 @@ namespace Viscoplastic
       fail(what + " is " + std::to_string(value) +
            ", which the rest of the file cannot hold");
     return value;
-  }
-
-
-
-  void
-  MeshReader::fail(const std::string &message) const
-  {
-    throw std::runtime_error("line " + std::to_string(line) + ": " + message);
-  }
-
-
-
-  void
-  MeshReader::add_node(const long number, const Point<3> &x)
-  {
-    if (!node_indices.emplace(number, mesh.nodes.size()).second)
-      fail("the node " + std::to_string(number) + " is there twice");
-    mesh.nodes.push_back(x);
   }
 
 
@@ -183,23 +155,4 @@ namespace Viscoplastic
 
 
 
-  std::vector<long>
-  MeshReader::node_numbers(const unsigned int n)
-  {
-    std::vector<long> result(n);
-    for (long &number : result)
-      number = integer("the number of a node");
-    return result;
-  }
-
-
-
-  Point<3>
-  MeshReader::coordinates()
-  {
-    Point<3> x;
-    for (unsigned int d = 0; d < 3; ++d)
-      x[d] = number("a coordinate");
-    return x;
-  }
 } // namespace Viscoplastic

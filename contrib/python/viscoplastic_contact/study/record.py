@@ -27,7 +27,7 @@ ESTIMATE_PARTS = (
     "estimate_total",
 )
 
-# The phases of a run, as the program times them (results/run_phases.h), and the
+# The phases of a run, as the program times them (results/run_summary.h), and the
 # column of study.csv for each; several phases may share one.
 PHASES = {
     "pilot run": "seconds_set_up",

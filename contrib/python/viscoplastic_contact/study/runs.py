@@ -217,7 +217,6 @@ class StudyRuns:
             f"Output/Reference fields={'true' if is_reference else 'false'}",
             "Checkpoint/Wall time limit=0",
             f"Checkpoint/Directory={place}/checkpoint",
-            "Error control/Two-level comparison=false",
         ]
         # A scene without one of its effects may lack what it records.
         if not self.has_outputs:

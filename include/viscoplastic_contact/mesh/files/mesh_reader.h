@@ -4,6 +4,7 @@
 #include <viscoplastic_contact/mesh/files/mesh_file.h>
 
 #include <map>
+#include <stdexcept>
 #include <string>
 #include <unordered_map>
 #include <vector>
@@ -40,7 +41,12 @@ namespace Viscoplastic
 
     /// Read the next word, which has to be this one.
     void
-    expect(const std::string &keyword);
+    expect(const std::string &keyword)
+    {
+      const std::string found = word(keyword);
+      if (found != keyword)
+        fail("expected " + keyword + ", found " + quoted(found));
+    }
 
     /// Read a whole number of magnitude 1e12 at most.
     long
@@ -61,15 +67,30 @@ namespace Viscoplastic
 
     /// Read the numbers of @p n nodes.
     std::vector<long>
-    node_numbers(const unsigned int n);
+    node_numbers(const unsigned int n)
+    {
+      std::vector<long> result(n);
+      for (long &number : result)
+        number = integer("the number of a node");
+      return result;
+    }
 
     /// Read the three coordinates of a node.
     Point<3>
-    coordinates();
+    coordinates()
+    {
+      Point<3> x;
+      for (unsigned int d = 0; d < 3; ++d)
+        x[d] = number("a coordinate");
+      return x;
+    }
 
     /// Throw the message, with the present line in front.
     [[noreturn]] void
-    fail(const std::string &message) const;
+    fail(const std::string &message) const
+    {
+      throw std::runtime_error("line " + std::to_string(line) + ": " + message);
+    }
 
     /// Return a word of the file as a message can show it.
     static std::string
@@ -79,7 +100,12 @@ namespace Viscoplastic
 
     /// Add a node; its number must be new.
     void
-    add_node(const long number, const Point<3> &x);
+    add_node(const long number, const Point<3> &x)
+    {
+      if (!node_indices.emplace(number, mesh.nodes.size()).second)
+        fail("the node " + std::to_string(number) + " is there twice");
+      mesh.nodes.push_back(x);
+    }
 
     /// Add a cell or face; elements of lower dimensions are left out. Shapes
     /// other than lines, quadrilaterals and hexahedra with nodes at their

@@ -6,7 +6,9 @@
 
 #include <mpi.h>
 
+#include <map>
 #include <string>
+#include <utility>
 
 namespace Viscoplastic
 {
@@ -28,4 +30,11 @@ namespace Viscoplastic
                  const unsigned int dim,
                  const PlaneModel   plane_model,
                  const MPI_Comm     communicator);
+
+
+
+  /// The names of the physical groups of a mesh file of Gmsh, by dimension and
+  /// tag; none where the file is of another format or has no such section.
+  std::map<std::pair<unsigned int, unsigned int>, std::string>
+  physical_names(const std::string &file);
 } // namespace Viscoplastic

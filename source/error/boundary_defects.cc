@@ -100,6 +100,10 @@ namespace Viscoplastic
           if (!condition.has_friction())
             continue;
           face_values.reinit(cell, f);
+          std::vector<std::size_t> vertices;
+          for (unsigned int v = 0; v < face->n_vertices(); ++v)
+            vertices.push_back(
+              space.relevant.index_within_set(face->vertex_dof_index(v, 0)));
           const auto add = [&](const types::global_dof_index dof,
                                const Point<dim>             &position,
                                const double                  area) {
@@ -127,7 +131,8 @@ namespace Viscoplastic
                                     area,
                                     &condition,
                                     normal,
-                                    held});
+                                    held,
+                                    vertices});
           };
           for (const unsigned int v : cell->vertex_indices())
             {
@@ -221,9 +226,17 @@ namespace Viscoplastic
   {
     if (!any_held_nodes)
       return {};
-    const AdmissibleSpace<dim> &space = discretization.space;
-    const DistributedVector     density =
-      discretization.face->density(state.contact);
+    const AdmissibleSpace<dim> &space    = discretization.space;
+    ContactState                slipping = state.contact;
+    for (unsigned int p = 0; p < slipping.n_points(); ++p)
+      if (slipping.sticks[p] &&
+          !discretization.face->layout().points[p].is_obstacle)
+        slipping.multiplier[p] = Tensor<1, 2>();
+    const DistributedVector density  = discretization.face->density(slipping);
+    const auto              is_force = [&](const BoundaryCondition<dim> &of) {
+      return quantity.kind == QuantityOfInterest::Kind::friction_force &&
+             quantity.is_of(of.id);
+    };
     // Between two bodies slip is relative, and both feel the friction.
     DistributedVector u = state.u, w = ghosted_w;
     space.make_relative(u);
@@ -232,11 +245,15 @@ namespace Viscoplastic
       space.dof_handler.get_triangulation().n_active_cells());
     for (const HeldNode &node : held_nodes)
       {
-        const auto at_node = [&node](const DistributedVector &field) {
+        const auto at = [](const DistributedVector &field,
+                           const std::size_t        first) {
           Tensor<1, dim> value;
           for (unsigned int d = 0; d < dim; ++d)
-            value[d] = field.begin()[node.first + d];
+            value[d] = field.begin()[first + d];
           return value;
+        };
+        const auto at_node = [&](const DistributedVector &field) {
+          return at(field, node.first);
         };
         const BoundaryCondition<dim> &condition = *node.condition;
         const Tensor<1, dim>          sliding =
@@ -244,15 +261,24 @@ namespace Viscoplastic
                              moved = tangential(at_node(u), node.normal),
                              slip = moved - sliding, held = node.held * slip;
         if (!(held.norm() > 1e-9 * (moved.norm() + sliding.norm())))
-          continue;
+          {
+            double beside = 0.;
+            for (const std::size_t vertex : node.vertices)
+              beside =
+                std::max(beside,
+                         std::abs((node.held *
+                                   at(density, vertex))[quantity.component]));
+            if (is_force(condition))
+              result[node.active_cell] += beside * node.area;
+            continue;
+          }
         double missing = condition.bound(node.position, state.t) * node.area *
                          held.norm() / slip.norm();
         if (condition.has_computed_pressure())
           missing *= std::abs(at_node(density) * node.normal);
         if (quantity.is_sum())
           missing *= held.norm();
-        else if (quantity.kind == QuantityOfInterest::Kind::friction_force &&
-                 quantity.is_of(condition.id))
+        else if (is_force(condition))
           missing *= std::abs(held[quantity.component]) / held.norm();
         else
           missing *= (node.held * at_node(w)).norm();

@@ -308,7 +308,7 @@ namespace Viscoplastic
                 (slopes[i] - old_slopes[i]);
       return step;
     };
-    std::vector<double>                  sums(6, 0.);
+    std::vector<double>                  sums(8, 0.);
     std::vector<SymmetricTensor<2, 3>>   strains(stress_space.n_samples);
     std::optional<SymmetricTensor<4, 3>> fading;
     SymmetricTensor<4, 3>                relaxation;
@@ -428,9 +428,15 @@ namespace Viscoplastic
               {
                 const SymmetricTensor<2, 3> left =
                   relaxation * (fades ? all : step);
-                state.remembered_error[i] =
-                  relaxation * state.remembered_error[i] + left;
+                const SymmetricTensor<2, 3> relaxed =
+                  relaxation * state.remembered_error[i];
                 sums[4] += weight * stiffness.complementary_square(left);
+                sums[6] += weight * stiffness.complementary_square(
+                                      state.remembered_error[i]);
+                sums[7] +=
+                  weight * stiffness.complementary_square(
+                             fading ? state.remembered_error[i] : relaxed);
+                state.remembered_error[i] = relaxed + left;
               }
             sums[0] += weight * stiffness.complementary_square(step);
             sums[1] +=
@@ -453,6 +459,8 @@ namespace Viscoplastic
     estimate.creep_path = old.errors.creep_path + k * std::sqrt(sums[5]);
     estimate.creep_time =
       estimate.creep_path > 0. ? estimate.creep_path / std::sqrt(sums[5]) : 0.;
+    estimate.remembered_share =
+      sums[6] > 0. ? std::sqrt(sums[7] / sums[6]) : 1.;
     estimate.remembered_indicator =
       relaxes ? std::sqrt(sums[4]) : estimate.time_indicator;
   }

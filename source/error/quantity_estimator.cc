@@ -545,11 +545,15 @@ namespace Viscoplastic
         if (slip_defects != nullptr && slip_defects->work > 0.)
           add_slip_defects(
             solver, *slip_defects, state.contact, linearized, dual, estimate);
+        // What points that are off do to a force relaxes as stress does.
+        const double left = quantity.is_force() ? errors.remembered_share : 1.;
+        estimate.turning *= left;
+        estimate.resting *= left;
         estimate.friction =
           std::min(estimate.turning, bound) + estimate.resting;
         estimate.friction_indicator =
-          std::min(estimate.turning - before.turning, added) +
-          estimate.resting - before.resting;
+          std::min(estimate.turning - left * before.turning, added) +
+          estimate.resting - left * before.resting;
       }
     estimate.friction_indicator +=
       of_swing(errors.swing, errors.swing_share) -

@@ -63,10 +63,28 @@ namespace Viscoplastic
 
     // Those of all ranks, which exchange sums at nodes together.
     std::map<types::material_id, unsigned int> part_of;
+    bool                                       is_mirrored = true;
     for (const auto &cell :
          space.dof_handler.get_triangulation().cell_iterators_on_level(0))
-      if (space.scene.is_present(cell->material_id()))
-        part_of.emplace(cell->material_id(), part_of.size());
+      if (const auto id = cell->material_id(); space.scene.is_present(id))
+        {
+          part_of.emplace(id, part_of.size());
+          is_mirrored &= !space.scene.material(id).is_anisotropic();
+        }
+    std::set<types::boundary_id> planes;
+    for (const auto &[id, condition] : space.scene.boundary)
+      if (is_mirrored && condition.role == BoundaryRole::symmetry)
+        {
+          planes.insert(id);
+          Tensor<1, 3> normal;
+          for (unsigned int d = 0; d < dim; ++d)
+            normal[d] = condition.normal[d];
+          for (const auto dof : DoFTools::extract_boundary_dofs(
+                 dof_handler,
+                 fe.component_mask(FEValuesExtractors::Scalar(0)),
+                 {id}))
+            mirrored.emplace_back(place(dof), normal);
+        }
     parts.resize(part_of.size());
     for (const auto &[id, p] : part_of)
       {
@@ -99,8 +117,9 @@ namespace Viscoplastic
         const unsigned int           p = part_of.at(cells.cells[c].material_id);
         std::array<bool, n_vertices> is_at_end{};
         for (const unsigned int face : cell->face_indices())
-          if (cell->at_boundary(face) ||
-              cell->neighbor(face)->material_id() != cell->material_id())
+          if (cell->at_boundary(face) ?
+                planes.count(cell->face(face)->boundary_id()) == 0 :
+                cell->neighbor(face)->material_id() != cell->material_id())
             for (unsigned int v = 0; v < n_vertices / 2; ++v)
               is_at_end[GeometryInfo<dim>::face_to_cell_vertices(face, v)] =
                 true;
@@ -230,8 +249,28 @@ namespace Viscoplastic
     interpolate_hanging_nodes(part);
     if (from_inside)
       {
+        mirror();
         extrapolate(part, u);
+        mirror();
         interpolate_hanging_nodes(part);
+      }
+  }
+
+
+
+  template <int dim>
+  void
+  RecoveryEstimator<dim>::mirror() const
+  {
+    double *const nodal = values.begin();
+    for (const auto &[node, normal] : mirrored)
+      {
+        SymmetricTensor<2, 3> strain = recovered(node);
+        const Tensor<1, 3>    across = strain * normal,
+                           shear     = across - (across * normal) * normal;
+        strain -= 2. * symmetrize(outer_product(shear, normal));
+        for (unsigned int i = 0; i < components.size(); ++i)
+          nodal[node + i] = strain.access_raw_entry(components[i]);
       }
   }
 

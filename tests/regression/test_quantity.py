@@ -602,15 +602,47 @@ class PointInCreep(TestCase):
         return (result["quantity_correction"] / error)[ends]
 
     def test_linear(self):
-        self.check(**{"Material/Law": "maxwell", "Material/maxwell/Viscosity": 0.5})
+        law = {"Material/Law": "maxwell", "Material/maxwell/Viscosity": 0.5}
+        signed = self.check(**law)
+        # measured: 0.97 to 1.03; 0.11 where planes of symmetry are boundaries
+        self.assertGreater(signed.min(), 0.85)
+        self.assertLess(signed.max(), 1.15)
 
     def test_power_law(self):
         signed = self.check(**{"Material/norton/Exponent": 5})
-        # measured: 0.96, 0.91 and 0.90 (of it 0.06 are errors of the fine mesh); at
-        # the end 1.13 as if the law was linear, 1.3 with the other sign of what it
-        # takes beyond its tangents
-        self.assertGreater(signed[1:].min(), 0.8)
-        self.assertLess(signed[1:].max(), 1.05)
+        # measured: 1.11, 1.06 and 1.06 (of it 0.06 are errors of the fine mesh); 0.9
+        # where planes of symmetry are boundaries
+        self.assertGreater(signed[1:].min(), 0.95)
+        self.assertLess(signed[1:].max(), 1.2)
+
+    def test_in_space(self):
+        """A hollow sphere of 2 cells through its wall, between planes of symmetry."""
+        x = "x/sqrt(x*x + y*y + z*z)"
+
+        def sphere(refinements, **more):
+            scene = {
+                **self.SCENE,
+                "Dimension": 3,
+                "Time/Phases": "0.001: 4, 0.01: 4",
+                "Geometry/Arguments": "0, 0, 0 : 1 : 2 : 3 : true",
+                "Geometry/Global refinements": refinements,
+                "Material/norton/Exponent": 5,
+                "Boundary 0/Traction": f"{x}; y{x[1:]}; z{x[1:]}",
+                "Boundary 4/Role": "symmetry",
+                "Output/Points": "1, 0, 0",
+            }
+            return run("hard/norton_cylinder", {**scene, **more})
+
+        result = sphere(1, **of("point0_x"))
+        error = (sphere(3)["point0_x"] - result["point0_x"])[1:]
+        # measured: 0.6 to 1.2, 1.4 to 2.5; where planes of symmetry are boundaries -0.5
+        # to 0.5, from 0.55
+        signed = result["quantity_correction"][1:] / error
+        self.assertGreater(signed.min(), 0.4)
+        self.assertLess(signed.max(), 1.4)
+        quotient = result["quantity_space"][1:] / error
+        self.assertGreater(quotient.min(), 1)
+        self.assertLess(quotient.max(), 3)
 
     def test_corners(self):
         """The strains of a cantilever at its clamped corners, which make most of the
@@ -739,6 +771,7 @@ class EachKind(TestCase):
             quotients = (result["quantity_space"] / error)[[*self.ENDS]]
             self.assertGreater(quotients.min(), least)
             self.assertLess(quotients.max(), largest)
+            return result
 
     def test_in_creep(self):
         # measured: 1.3 to 1.6, 2.9 to 4.4, up to 4, 1.3 to 2.3; the reaction meets the
@@ -771,6 +804,12 @@ class EachKind(TestCase):
         # 1.8; with the bounds of the step alone 0.007
         self.check("reaction_3_y", 0.6, 3, **held)
         self.check("friction_dissipation", 0.7, 3, **held)
+        # measured: 2.5 at the end, when the node on the plane of symmetry carries what
+        # slips beside it (0.61 without); of slip that came to rest 11 times the force
+        # where that does not fade
+        column = "friction_force_x"
+        result = self.check(column, 0.7, 5, **held)
+        self.assertLess(result["quantity_other"][-1], 0.2 * result[column][-1])
 
 
 class BetweenTwoPlanes(TestCase):

@@ -34,11 +34,12 @@ namespace Viscoplastic
                   const DistributedVector &ghosted_w) const;
 
     /// The friction that is missing where other conditions hold nodes on
-    /// Gamma_3 along a foundation that slides beneath them, by active cell:
-    /// these have no friction point in that direction, and what holds them
-    /// carries their part of the face. It is the bound times the part of the
-    /// slip in that direction, for the work of friction times the slip. Empty
-    /// where no node is held. Collective.
+    /// Gamma_3, by active cell: these have no friction point in that direction,
+    /// and what holds them carries their part of the face. Along a foundation
+    /// that slides beneath them it is the bound times the part of the slip in
+    /// that direction, for the work of friction times the slip. At rest, as on
+    /// a plane of symmetry, a friction force has there what acts on the nodes
+    /// beside it that slip. Empty where no node is held. Collective.
     Vector<double>
     held_friction(const State<dim>         &state,
                   const QuantityOfInterest &quantity,
@@ -69,6 +70,8 @@ namespace Viscoplastic
       Tensor<1, dim>                normal;
       /// Projects on the tangential directions in which it is held.
       Tensor<2, dim> held;
+      /// The first entries of the vertices of the face.
+      std::vector<std::size_t> vertices;
     };
 
     void

@@ -117,6 +117,9 @@ namespace Viscoplastic
     /// The part of that increment that does not relax and stays in a force as
     /// quantity of interest.
     double remembered_indicator = 0.;
+    /// What the last step has left of the errors of a force before it, as far
+    /// as they relax at constant strain.
+    double remembered_share = 1.;
     /// (sum_j (k_j/3) |du_j - du_{j-1}|^2)^{1/2}, the computable part of
     /// I^k(u')^{1/2}, (5.19); energy^{1/2} time^{-1/2}.
     double velocity_variation = 0.;

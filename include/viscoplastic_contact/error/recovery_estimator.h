@@ -79,7 +79,9 @@ namespace Viscoplastic
     /// in squares. Means at a boundary miss half of what a strain varies by in
     /// a cell: eps* is extrapolated there, so that linear strains on boxes are
     /// met everywhere; but not from cells where is_curved(), as at the corners
-    /// of clamped boundaries, whose product it would take away. And under mean
+    /// of clamped boundaries, whose product it would take away. A plane of
+    /// symmetry is no boundary: strains go on beyond it, mirrored, and have no
+    /// shear along it (if materials are isotropic). And under mean
     /// dilatation pressures do work on what div u_h and div w_h vary by in
     /// cells, delta:
     ///
@@ -182,6 +184,10 @@ namespace Viscoplastic
     void
     extrapolate(const Part &part, const DistributedVector &u) const;
 
+    /// Set the shear along planes of symmetry to zero.
+    void
+    mirror() const;
+
     /// Set the strains at hanging nodes to what is between their parents.
     void
     interpolate_hanging_nodes(const Part &part) const;
@@ -207,12 +213,14 @@ namespace Viscoplastic
     DoFHandler<dim>                 dof_handler;
     /// Local places of the first component at the vertices of owned cells.
     std::vector<std::array<unsigned int, n_vertices>> nodes;
-    /// The vertices of owned cells on faces where the part ends, as far as the
-    /// opposite one is not on such a face.
+    /// The vertices of owned cells on faces where the part ends, but for planes
+    /// of symmetry, as far as the opposite one is not on such a face.
     std::vector<std::vector<unsigned char>> ends;
     /// The cells that share a vertex of owned cells and nothing else with them,
     /// where the mesh around the vertex is regular; invalid elsewhere.
     std::vector<std::array<unsigned int, n_vertices>> across;
+    /// Nodes on planes of symmetry, with the normal.
+    std::vector<std::pair<unsigned int, Tensor<1, 3>>> mirrored;
     /// Shape functions at the points of a cell.
     std::array<std::array<double, n_vertices>, n_points> shape_values;
     std::vector<Part>                                    parts;

@@ -25,11 +25,13 @@ def friction_state(contact):
     if "stick" not in contact:
         return states
     slipping = contact["stick"] < 0.5
+    if "slip_rate" in contact:
+        rate = np.linalg.norm(contact["slip_rate"], axis=1)
+        slipping &= rate >= contact.rest  # and not at its bound, at rest
     # What another condition moves along the face only sticks across that. Without slip
     # rates are rounding.
     moved = np.zeros(len(slipping), bool)
     if "slip_rate" in contact:
-        rate = np.linalg.norm(contact["slip_rate"], axis=1)
         largest = rate[slipping].max(initial=0.0)
         moved = ~slipping & (largest > 0.0) & (rate > 1e-6 * largest)
     has_friction = (contact["bound"] > 0.0) & ~moved

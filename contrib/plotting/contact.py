@@ -95,10 +95,10 @@ class Scale:
             self.extremes[name] = values.min(), values.max()
             # A corner must not flatten the rest.
             low, high = (
-                style.robust(side, 0.98, beyond=1.5)[0] for side in (-values, values)
+                style.robust(side, **style.FEW)[0] for side in (-values, values)
             )
             self.limits[name] = -low, high
-            self.shades[name] = style.Shade(values, name, 0.98)
+            self.shades[name] = style.Shade(values, name, **style.FEW)
             self.shades[name].map = matplotlib.colormaps[COLORS.get(name, "viridis")]
 
     def has_gap(self):
@@ -331,8 +331,9 @@ def draw_planes(contact, body, scale):
                     add_arrows(axes, plane, contact, scale.arrows.longest, length)
                 plane.prepare(axes, scale.length, length)
                 unit = scale.unit(name)
-                label = style.range_label(shade, words[name], values, unit)
                 flat, extend = plane.is_flat(), shade.extend
+                separator = " " if flat else "\n"
+                label = style.range_label(shade, words[name], values, unit, separator)
                 add_color_bar(axes, shade.mappable(), label, unit, flat, extend=extend)
             if i == 0:
                 row[0].set_title(f"{plane.name(scale.length)}, {plane.view()}", pad=10)

@@ -114,7 +114,7 @@ def draw_maps(results, times, pieces, left_out):
     lasting = np.concatenate([[0.0], *lasting])
     there = np.isfinite(everything)
     everything = everything[there]
-    shade = style.Shade(everything, "the slip rate", 0.98, lasting[there])
+    shade = style.Shade(everything, "the slip rate", weights=lasting[there], **style.FEW)
     rate = units.unit("velocity", shade.ends())
     for lower, ends, rates in maps:
         lower.pcolormesh(

@@ -92,14 +92,14 @@ class Shade:
     weights  of the values, such as how long they last
     """
 
-    def __init__(self, values, what, share=0.995, weights=None):
+    def __init__(self, values, what, share=0.995, weights=None, beyond=1.15):
         values = np.asarray(values, dtype=float)
         if not np.isfinite(values).all():
             raise UserError(f"{what} contains values that are not finite")
         low, high = values.min(), values.max()
         size = max(abs(low), abs(high))
         if min(-low, high) > 0.02 * size:
-            limit, beyond = robust(np.abs(values), share, weights)
+            limit, is_beyond = robust(np.abs(values), share, weights, beyond)
             low, high = -limit, limit
             self.map = matplotlib.colormaps["RdBu_r"]
             above, below = values.max() > limit, values.min() < -limit
@@ -109,13 +109,13 @@ class Shade:
             self.map = matplotlib.colormaps["viridis_r" if negative else "viridis"]
             above = below = False
             if negative:
-                limit, below = robust(-values, share, weights)
+                limit, below = robust(-values, share, weights, beyond)
                 low = -limit
                 high = 0.0 if high > NEAR_ZERO * low else high
             else:
-                high, above = robust(values, share, weights)
+                high, above = robust(values, share, weights, beyond)
                 low = 0.0 if 0.0 < low < NEAR_ZERO * high else low
-            beyond = above or below
+            is_beyond = above or below
         if high - low <= 1e-9 * max(abs(low), abs(high), 1e-300):
             middle = 0.5 * (low + high)
             low, high = middle - 0.5 * (size or 1.0), middle + 0.5 * (size or 1.0)
@@ -124,7 +124,7 @@ class Shade:
             (True, False): "max",
             (False, True): "min",
             (True, True): "both",
-        }[(bool(above and beyond), bool(below and beyond))]
+        }[(bool(above and is_beyond), bool(below and is_beyond))]
         self.norm = Normalize(low, high)
 
     def ends(self):
@@ -138,6 +138,8 @@ class Shade:
 
 
 NEAR_ZERO = 0.3  # of the largest value: colors then begin with zero
+# Where a corner has a node in thirty, and lies far beyond.
+FEW = {"share": 0.98, "beyond": 1.5}
 
 
 def robust(values, share, weights=None, beyond=1.15):

@@ -324,9 +324,8 @@ def shade_of(name, parts):
     parts = [part for part in parts if name in part.values]
     values = [part.values[name] for part in parts]
     weights = [np.full(len(v), part.lasting) for v, part in zip(values, parts)]
-    return style.Shade(
-        np.concatenate(values), f'the field "{name}"', 0.98, np.concatenate(weights)
-    )
+    values, weights = np.concatenate(values), np.concatenate(weights)
+    return style.Shade(values, f'the field "{name}"', weights=weights, **style.FEW)
 
 
 def color_map(name):

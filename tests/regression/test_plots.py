@@ -502,6 +502,10 @@ class Numbers(TestCase):
         mesh.rest = 0.05
         mesh.data["slip_rate"][1, 0] = 0.04
         self.assertEqual(friction_state(mesh).tolist(), [sticks, sticks, open_, sticks])
+        # beside one that slips
+        mesh.data["stick"][0], mesh.data["slip_rate"][0, 0] = 0, 0.1
+        found = friction_state(mesh).tolist()
+        self.assertEqual(found, [style.SLIPPING, sticks, open_, open_])
 
     def test_runs_of_states(self):
         self.assertEqual(
@@ -567,7 +571,7 @@ class Numbers(TestCase):
         # one corner of a face of thirty nodes, and the middle of one of five
         for n, largest, expected in ((30, 9, 1), (5, 9, 9), (30, 1.4, 1.4)):
             values = np.append(np.linspace(0, 1, n), largest)
-            found, _ = style.robust(values, 0.98, beyond=1.5)
+            found, _ = style.robust(values, **style.FEW)
             self.assertClose(found, expected, relative=0.1)
         for values in ([0.1, 1.0], [-1.0, -0.1]):
             shade = style.Shade(np.array(values), "test")

@@ -88,6 +88,7 @@ class Scale:
     units, length, time, unit
                    units in general, of axes, of times and of the field
     supports       what the scene prescribes on the boundary, or None
+    of_revolution  whether the body is one, and
     mirrored       whether the section of a body of revolution has its other half
     """
 
@@ -109,10 +110,11 @@ class Scale:
             values += [of_cells.min(axis=1), of_cells.max(axis=1)]
         # The third stress, around the axis, is that of zz.
         self.axes = "$x$", "$y$"
-        if results.is_of_revolution():
+        self.of_revolution = results.is_of_revolution()
+        if self.of_revolution:
             self.axes = "$x$, radius", "$y$, along the axis"
         on_axis = self.low[0] < 1e-6 * self.size
-        self.mirrored = results.is_of_revolution() and (
+        self.mirrored = self.of_revolution and (
             on_axis if options.mirror is None else options.mirror
         )
         if options.mirror and not self.mirrored:
@@ -156,6 +158,7 @@ class Body:
     def __init__(self, results, index, scale):
         self.body = results.body(index)
         self.contact = results.face(index)
+        self.rest = results.rest
         self.time = results.solution[index][0]
         self.name = results.name
         self.scale = scale

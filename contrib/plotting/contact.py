@@ -27,6 +27,8 @@ from .supports import MOTION
 from .units import Unit, Units, show
 
 MOST_PIECES = 4
+# White where the body touches.
+COLORS = {"traction": "cividis", "contact_pressure": "cividis", "gap": "YlGnBu"}
 
 
 class Arrows:
@@ -53,8 +55,9 @@ class Arrows:
 class Scale:
     """Ranges that all frames of an animation share.
 
-    largest  sizes of vectors and largest numbers, by name
-    limits   in two dimensions (lowest, highest) of their tangential components
+    shades   colors of sizes of vectors and of numbers in three dimensions, by name
+    limits   in two dimensions (lowest, highest) of their tangential components that
+             axes show, and `extremes' those of all
     arrows   those of the slip in three dimensions
     units    of the numbers
     """
@@ -73,41 +76,46 @@ class Scale:
         bodies = [results.body(index).points for index in indices]
         self.length = self.units.unit("length", np.concatenate(bodies))
         self.arrows = Arrows()
-        self.largest = dict.fromkeys(self.KINDS, 0.0)
+        self.values = {name: [np.zeros(1)] for name in self.KINDS}
         self.displacement = 0.0
-        self.limits = {name: (0.0, 0.0) for name in self.largest}
         for index in indices:
             contact = required(results, index)
             moved = sizes(contact["displacement"]).max(initial=0.0)
             self.displacement = max(self.displacement, moved)
-            for name in self.largest:
-                if name in contact:
-                    size = sizes(contact[name]).max(initial=0.0)
-                    self.largest[name] = max(self.largest[name], size)
             if contact.cells.shape[1] == 2:
-                self.extend_limits(contact)
+                self.extend_lines(contact)
             else:
                 self.arrows.extend(contact, results.body(index))
+                for name in self.values:
+                    if name in contact:
+                        self.values[name].append(sizes(contact[name]))
+        self.limits, self.extremes, self.shades = {}, {}, {}
+        for name, values in self.values.items():
+            values = np.concatenate(values)
+            self.extremes[name] = values.min(), values.max()
+            # A corner must not flatten the rest.
+            low, high = (
+                style.robust(side, **style.FEW)[0] for side in (-values, values)
+            )
+            self.limits[name] = -low, high
+            self.shades[name] = style.Shade(values, name, **style.FEW)
+            self.shades[name].map = matplotlib.colormaps[COLORS.get(name, "viridis")]
 
     def has_gap(self):
         """Whether there is one beside the rounding of displacements."""
-        return self.largest["gap"] > 1e-9 * self.displacement
+        return self.extremes["gap"][1] > 1e-9 * self.displacement
 
     def unit(self, name):
-        return self.units.unit(
-            self.KINDS[name], [*self.limits[name], self.largest[name]]
-        )
+        return self.units.unit(self.KINDS[name], self.limits[name])
 
-    def extend_limits(self, contact):
+    def extend_lines(self, contact):
         for line in lines(contact):
-            for name in self.largest:
+            for name in self.values:
                 if name in contact:
-                    values = along(line, contact[name])
+                    self.values[name].append(along(line, contact[name]))
                     if name == "traction":
                         bound = contact["bound"][line.nodes]
-                        values = np.concatenate([values, bound, -bound])
-                    low, high = self.limits[name]
-                    self.limits[name] = min(low, values.min()), max(high, values.max())
+                        self.values[name] += [bound, -bound]
 
 
 def sizes(values):
@@ -188,8 +196,16 @@ def draw_lines(contact, scale):
         "slip_rate": "slip rate of\n" r"the body $\dot{s}_\tau$",
     }
     for axes, name in zip(first, names):
-        show(axes.yaxis, words[name], scale.unit(name))
         low, high = scale.limits[name]
+        beyond = [
+            f"{which} {style.short(end / scale.unit(name).size, 3)}"
+            for which, end, shown in zip(
+                ("at least", "at most"), scale.extremes[name], (low, high)
+            )
+            if end != shown
+        ]
+        text = words[name] + (f"\n({', '.join(beyond)})" if beyond else "")
+        show(axes.yaxis, text, scale.unit(name))
         if high > low:
             axes.set_ylim(low - 0.08 * (high - low), high + 0.08 * (high - low))
         else:
@@ -291,14 +307,6 @@ def draw_planes(contact, body, scale):
         layout="constrained",
     )
     figure.get_layout_engine().set(wspace=0.06)
-    shades = {
-        name: style.Shade([0.0, largest or 1.0], name)
-        for name, largest in scale.largest.items()
-    }
-    shades["traction"].map = matplotlib.colormaps["cividis"]
-    shades["contact_pressure"].map = matplotlib.colormaps["cividis"]
-    # White where the body touches.
-    shades["gap"].map = matplotlib.colormaps["YlGnBu"]
     words = {
         "slip": r"slip since $t=0$, $|s_\tau|$",
         "traction": r"tangential traction $|\sigma_\tau|$",
@@ -317,14 +325,16 @@ def draw_planes(contact, body, scale):
                     plane.prepare(axes, scale.length, length)
                     style.legend_above(axes, style.state_legend(states))
                     continue
-                values, shade = sizes(contact[name]), shades[name]
+                values, shade = sizes(contact[name]), scale.shades[name]
                 shaded(axes, plane.plane, plane.cells, values, shade)
                 if name == "slip":
                     add_arrows(axes, plane, contact, scale.arrows.longest, length)
                 plane.prepare(axes, scale.length, length)
                 unit = scale.unit(name)
-                label = unit.label(words[name])
-                add_color_bar(axes, shade.mappable(), label, unit, plane.is_flat())
+                flat, extend = plane.is_flat(), shade.extend
+                separator = " " if flat else "\n"
+                label = style.range_label(shade, words[name], values, unit, separator)
+                add_color_bar(axes, shade.mappable(), label, unit, flat, extend=extend)
             if i == 0:
                 row[0].set_title(f"{plane.name(scale.length)}, {plane.view()}", pad=10)
     return figure, len(found) - len(shown)

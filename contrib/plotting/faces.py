@@ -24,14 +24,16 @@ def friction_state(contact):
         states[is_open] = NO_CONTACT
     if "stick" not in contact:
         return states
-    slipping = contact["stick"] < 0.5
-    # What another condition moves along the face only sticks across that. Without slip
-    # rates are rounding.
+    sticking = contact["stick"] >= 0.5
+    slipping = ~sticking
     moved = np.zeros(len(slipping), bool)
     if "slip_rate" in contact:
         rate = np.linalg.norm(contact["slip_rate"], axis=1)
+        slipping &= rate >= contact.rest  # and not at its bound, at rest
+        # What another condition moves along the face only sticks across that. Without
+        # slip rates are rounding.
         largest = rate[slipping].max(initial=0.0)
-        moved = ~slipping & (largest > 0.0) & (rate > 1e-6 * largest)
+        moved = sticking & (largest > 0.0) & (rate > 1e-6 * largest)
     has_friction = (contact["bound"] > 0.0) & ~moved
     states = np.where(has_friction, slipping.astype(int), states)
     return states if contact.cells.shape[1] != 2 else with_held_ends(contact, states)

@@ -122,6 +122,10 @@ def draw_force_curve(axes, statistics, body):
     if pressed and not any(force.any() for force in forces.values()):
         kind, forces = "contact", pressed
     largest = max(np.abs(force).max(initial=0.0) for force in forces.values())
+    # Around an axis radial forces balance each other; their sum is that of sizes.
+    words = {axis: f"force, ${axis}$" for axis in "xyz"}
+    if body.scale.of_revolution:
+        words = {"x": "radial force, added up around the axis", "y": "along the axis"}
     for component, force in forces.items():
         # The component along a face's normal is zero all the time.
         if np.abs(force).max(initial=0.0) > 1e-9 * largest:
@@ -130,7 +134,7 @@ def draw_force_curve(axes, statistics, body):
                 force,
                 color=style.COMPONENT[component],
                 ls=style.DASHES[component],
-                label=f"force, ${component}$",
+                label=words[component],
                 marker="." if len(times) < 12 else None,
             )
     axes.axvline(body.time, color="black", lw=0.9, ls=":")
@@ -151,7 +155,10 @@ def draw_force_curve(axes, statistics, body):
     if kind == "friction" and has_areas:
         slip = statistics["slip_area"]
         total = statistics["stick_area"] + slip
-        share = np.divide(slip, total, out=np.zeros_like(slip), where=total > 0.0)
+        moves = statistics["max_slip"] > body.rest * statistics["k"]
+        share = np.divide(
+            slip, total, out=np.zeros_like(slip), where=moves & (total > 0.0)
+        )
         other = axes.twinx()
         handles.append(
             other.fill_between(

@@ -85,11 +85,6 @@ def draw_maps(results, times, pieces, left_out):
         squeeze=False,
         layout="constrained",
     )
-    everything = np.concatenate(
-        [[0.0], *(rate for _, found in pieces for _, _, rate in found)]
-    )
-    everything = everything[np.isfinite(everything)]
-    shade = style.Shade(everything, "the slip rate")
     states_map = ListedColormap(
         [
             style.STATE_COLORS[state]
@@ -98,8 +93,7 @@ def draw_maps(results, times, pieces, left_out):
     )
     units = Units.of(results)
     length = units.unit("length", [line.length for line, _ in pieces])
-    rate = units.unit("velocity", everything)
-    occurring = []
+    occurring, maps = [], []
     for (line, found), (upper, lower) in zip(pieces, panels.T):
         count = columns_for([s / line.length for s, _, _ in found])
         ends = np.linspace(0.0, line.length, count + 1)
@@ -110,12 +104,22 @@ def draw_maps(results, times, pieces, left_out):
         upper.pcolormesh(
             ends, times, states, cmap=states_map, vmin=-2.5, vmax=1.5, rasterized=True
         )
-        lower.pcolormesh(
-            ends, times, rates, cmap=shade.map, norm=shade.norm, rasterized=True
-        )
+        maps.append((lower, ends, rates))
         lower.set_facecolor(style.OPEN)
         show(lower.xaxis, line.label(length), length)
         occurring.append(np.unique(states))
+    everything = np.concatenate([[0.0], *(rates.ravel() for _, _, rates in maps)])
+    # The first minute of a year is a line.
+    lasting = [np.repeat(np.diff(times), rates.shape[1]) for _, _, rates in maps]
+    lasting = np.concatenate([[0.0], *lasting])
+    there = np.isfinite(everything)
+    everything = everything[there]
+    shade = style.Shade(everything, "the slip rate", weights=lasting[there], **style.FEW)
+    rate = units.unit("velocity", shade.ends())
+    for lower, ends, rates in maps:
+        lower.pcolormesh(
+            ends, times, rates, cmap=shade.map, norm=shade.norm, rasterized=True
+        )
     for row in panels:
         show(row[0].yaxis, "time $t$", units.unit("time", times))
     handles = style.state_legend(np.concatenate(occurring))

@@ -86,18 +86,20 @@ class Shade:
     """How values become colors, the same for all frames of an animation.
 
     Corner singularities must not darken the rest of the body, so the colors
-    end at the 99.5 % quantile where a few values lie far beyond.  Fields of
+    end where a `share` of the values does if a few lie far beyond.  Fields of
     both signs get a map whose white is zero.
+
+    weights  of the values, such as how long they last
     """
 
-    def __init__(self, values, what):
+    def __init__(self, values, what, share=0.995, weights=None, beyond=1.15):
         values = np.asarray(values, dtype=float)
         if not np.isfinite(values).all():
             raise UserError(f"{what} contains values that are not finite")
         low, high = values.min(), values.max()
         size = max(abs(low), abs(high))
         if min(-low, high) > 0.02 * size:
-            limit, beyond = robust(np.abs(values))
+            limit, is_beyond = robust(np.abs(values), share, weights, beyond)
             low, high = -limit, limit
             self.map = matplotlib.colormaps["RdBu_r"]
             above, below = values.max() > limit, values.min() < -limit
@@ -107,13 +109,13 @@ class Shade:
             self.map = matplotlib.colormaps["viridis_r" if negative else "viridis"]
             above = below = False
             if negative:
-                limit, below = robust(-values)
+                limit, below = robust(-values, share, weights, beyond)
                 low = -limit
                 high = 0.0 if high > NEAR_ZERO * low else high
             else:
-                high, above = robust(values)
+                high, above = robust(values, share, weights, beyond)
                 low = 0.0 if 0.0 < low < NEAR_ZERO * high else low
-            beyond = above or below
+            is_beyond = above or below
         if high - low <= 1e-9 * max(abs(low), abs(high), 1e-300):
             middle = 0.5 * (low + high)
             low, high = middle - 0.5 * (size or 1.0), middle + 0.5 * (size or 1.0)
@@ -122,7 +124,7 @@ class Shade:
             (True, False): "max",
             (False, True): "min",
             (True, True): "both",
-        }[(bool(above and beyond), bool(below and beyond))]
+        }[(bool(above and is_beyond), bool(below and is_beyond))]
         self.norm = Normalize(low, high)
 
     def ends(self):
@@ -136,14 +138,24 @@ class Shade:
 
 
 NEAR_ZERO = 0.3  # of the largest value: colors then begin with zero
+# Where a corner has a node in thirty, and lies far beyond.
+FEW = {"share": 0.98, "beyond": 1.5}
 
 
-def robust(values):
-    """An upper end for colors, and whether some values lie above it."""
-    quantile, largest = np.quantile(values, 0.995), values.max()
-    if quantile <= 0.0 or largest < 1.15 * quantile:
+def robust(values, share, weights=None, beyond=1.15):
+    """An upper end for colors or axes, and whether some values lie above it: that
+    `share` of what is not zero is below it, if the largest is so much `beyond`. One
+    or none of a few values says nothing."""
+    there = values > 0.0
+    ordered = np.argsort(values[there])
+    largest = values.max()
+    if len(ordered) < 20:
         return largest, False
-    return quantile, True
+    below = np.cumsum((np.ones_like(values) if weights is None else weights)[there][ordered])
+    place = np.searchsorted(below, share * below[-1])
+    # The largest alone may have more than the rest of the share.
+    quantile = values[there][ordered[min(place, len(ordered) - 2)]]
+    return (largest, False) if largest < beyond * quantile else (quantile, True)
 
 
 def range_label(shade, label, values, unit, separator=" "):

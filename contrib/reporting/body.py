@@ -51,7 +51,10 @@ class Shown:
     points, moved  places of the vertices without, and their displacements
     values         of fields, at faces or vertices
     ends           of fields, the extreme values in all of the mesh
+    lasting        for how long, beside the other times
     """
+
+    lasting = 1.0
 
     def __init__(self, record, surface):
         self.surface = surface
@@ -204,6 +207,12 @@ class Body:
         self.low = np.min([part.points.min(axis=0) for part in parts], axis=0)
         high = np.max([part.points.max(axis=0) for part in parts], axis=0)
         self.extent = float((high - self.low).max()) or 1.0
+        times = np.array([frame.time for frame in self.frames])
+        if len(times) > 1:
+            for frame, lasting in zip(self.frames, np.gradient(times)):
+                frame.lasting = max(lasting, 0.0)
+                if frame.face:
+                    frame.face.lasting = frame.lasting
         shades = {name: shade_of(name, self.frames) for name in self.names}
         on_face = self.shades_on_face()
         frames, bodies, faces = [], {}, {}
@@ -310,9 +319,13 @@ class Body:
 
 
 def shade_of(name, parts):
-    """The colors of a field at all times."""
-    values = [part.values[name] for part in parts if name in part.values]
-    return style.Shade(np.concatenate(values), f'the field "{name}"')
+    """The colors of a field at all times: neither a corner nor the first minute of a
+    year sets them."""
+    parts = [part for part in parts if name in part.values]
+    values = [part.values[name] for part in parts]
+    weights = [np.full(len(v), part.lasting) for v, part in zip(values, parts)]
+    values, weights = np.concatenate(values), np.concatenate(weights)
+    return style.Shade(values, f'the field "{name}"', weights=weights, **style.FEW)
 
 
 def color_map(name):

@@ -27,24 +27,18 @@ own scene ([study.md](study.md)).
 Errors are relative: the largest of all steps over the largest norm of the solution; where
 they are differences to a finer run, of the steps that end a phase of `Time/Phases`.
 
-**A study** runs a scene on a ladder of mesh widths $h$ and time steps $k$, each
-half of the one before: $h$ alone with the finest steps, $k$ alone on the finest
-mesh, and both.
-
 **Convergence.** An error $C h^p$ is a straight line of slope $p$. Where a curve is flat
 the error is the part that its ladder leaves alone. The dotted line is the fit
 $C_h h^p+C_k k^q$ of all runs, by which prices are predicted. In the gray below, differences
 say more of the reference than of the run.
 
 **Work and precision.** Each point is a run: to the left is cheap, below is accurate.
-Along the horizontal line of the error that you want, the curve that is met first from
-the left is the way to compute. Yellow are the runs that no other one beats in both time and
+Yellow are the runs that no other one beats in both time and
 error.
 
 **Prices.** For each tolerance the cheapest run of the study that is at least so
 accurate. *Italics* are predictions for runs that nobody made, good to a factor of about two,
-and worse the further they are from the measured runs. More than an hour or 16 GB is out of
-reach. **Bold** is the cheapest of a scene for an error, of measured ones if there are any.
+and worse the further they are from the measured runs. **Bold** is the cheapest of a scene for an error, of measured ones if there are any.
 
 ## Orders of convergence
 
@@ -65,8 +59,7 @@ below: there the error is that of what the ladder leaves alone, or of the refere
 A kink of the load in time and a jump of the bound (`kinked_load_2d`), clamped and
 loaded pieces of one side (`junction_2d`), a re-entrant corner. Errors are differences
 to a finer run, orders those in the energy norm (all norms:
-[accuracy_low_regularity.csv](accuracy_low_regularity.csv)). Theorem 4.4 promises
-convergence without a rate. In adaptive runs $h$ is the width of a uniform mesh with as
+[accuracy_low_regularity.csv](accuracy_low_regularity.csv)). In adaptive runs $h$ is the width of a uniform mesh with as
 many cells.
 
 {low_regularity}
@@ -113,10 +106,6 @@ means over the steps. The last column is what uniform meshes take for the same e
 *italics* as predicted.
 
 {to_tolerance}
-Runs of less than a tenth of a second take up to two and a half times as long as one
-uniform mesh, since the pilot run and each mesh have their price. Most of the time goes into
-new meshes wherever steps are few.
-
 ## What the tolerance of the solver is worth
 
 By default the iterations of a step stop with the estimated error of discretization

@@ -36,11 +36,10 @@ namespace Viscoplastic
       "What a mesh in 2D stands for. `strain': a slice of a long body, plane "
       "strain. `generalized strain': the same with a strain zz that is one for "
       "the whole section, given by `Loads/Axial strain' or the unknown that "
-      "belongs to `Loads/Axial force'. `axisymmetric': the section of a body of revolution about the "
-      "axis x = 0, with x = r >= 0 and y along the axis, u_theta = 0; a "
-      "boundary on the axis has the role symmetry. Stresses and strains zz "
-      "are those around the axis then, and forces, energies, areas and "
-      "volumes those of the whole ring.");
+      "belongs to `Loads/Axial force'. `axisymmetric': the section of a body "
+      "of revolution about the axis x = 0, with x = r >= 0 and y along the "
+      "axis; stresses and strains zz are those around the axis then, forces, "
+      "energies, areas and volumes those of the whole ring.");
     prm.add_parameter(
       "Generator",
       generator,
@@ -116,10 +115,7 @@ namespace Viscoplastic
   MaterialParameters::declare(ParameterHandler                  &prm,
                               const std::vector<LawDescription> &laws)
   {
-    prm.add_parameter("Name",
-                      name,
-                      "What the material is called in what a run prints, as "
-                      "for boundaries.");
+    prm.add_parameter("Name", name, "What a run calls the material.");
     prm.add_parameter("Young's modulus",
                       youngs_modulus,
                       "E > 0 as an expression of position; taken at the center "
@@ -195,9 +191,8 @@ namespace Viscoplastic
       stress_history,
       "Where the irreversible stress z lives. `quadrature points' keeps z at "
       "each quadrature point. `cell means' is the paper's piecewise constant "
-      "stress: it takes less time and memory, and is right for times up to a "
-      "few relaxation times; in long creep what varies in a cell never "
-      "relaxes, and the body becomes too stiff, by factors on coarse meshes.");
+      "stress, which is cheaper, but on coarse meshes too stiff by factors in "
+      "long creep.");
   }
 
 
@@ -275,16 +270,14 @@ namespace Viscoplastic
                       equilibrate,
                       "Whether to put the body into equilibrium with the loads "
                       "at t = 0 by an elastic step with friction, instead of "
-                      "refusing initial data that violate (2.12) by more than "
-                      "1e-6 of the loads. The "
-                      "displacement of that step counts in all displacements, "
-                      "unless `Reset displacement' is set.");
+                      "refusing initial data that are out of balance by more "
+                      "than 1e-6 of the loads. Its displacement counts in all "
+                      "displacements, unless `Reset displacement' is set.");
     prm.add_parameter("Reset displacement",
                       reset_displacement,
                       "Whether displacements and total strains are reported "
                       "from the initial state on, as where ground has settled "
-                      "long ago. Stresses, slip and energies are the same with "
-                      "and without.");
+                      "long ago.");
   }
 
 
@@ -324,10 +317,10 @@ namespace Viscoplastic
   {
     prm.add_parameter("Name",
                       name,
-                      "What the piece is called in what a run prints, in its "
-                      "record and in entries such as `Error control/Quantity', "
-                      "as in `roof'; by default `boundary' and its id, or the "
-                      "name of its physical group in a mesh file of Gmsh.");
+                      "What a run and entries such as `Error control/Quantity' "
+                      "call the piece, as in `roof'; by default `boundary' and "
+                      "its id, or the name of its physical group in a mesh "
+                      "file of Gmsh.");
     add_choice(
       prm,
       "Role",
@@ -349,17 +342,15 @@ namespace Viscoplastic
     prm.add_parameter("Pressure",
                       pressure,
                       "As Traction, and added to it: p(x,t), which presses on "
-                      "the body where it is positive. It acts along the normal "
-                      "of the faces as they are in the mesh: F = -p nu. Unit: "
-                      "stress.");
+                      "the body where it is positive. F = -p nu on the faces "
+                      "of the mesh. Unit: stress.");
     prm.add_parameter(
       "Normal stiffness",
       normal_stiffness,
-      "k_n(x) >= 0 of springs between the piece and the ground, "
-      "beside traction and pressure and for the same roles: "
-      "sigma nu = F - p nu - k_n u_nu nu - k_t u_tau. Springs "
-      "push and pull. Ground that moves by d adds k d to the "
-      "traction. Unit: stress/length.");
+      "k_n(x) >= 0 of springs between the piece and the ground, beside "
+      "traction and pressure and for the same roles: sigma nu = F - p nu - k_n "
+      "u_nu nu - k_t u_tau. Ground that moves by d adds k d to the traction. "
+      "Unit: stress/length.");
     prm.add_parameter("Tangential stiffness",
                       tangential_stiffness,
                       "k_t(x) >= 0 of these springs along the piece. Unit: "
@@ -381,12 +372,10 @@ namespace Viscoplastic
                       "For the role contact: the boundary of another body, by "
                       "its name or number, that takes the place of the rigid "
                       "foundation; it has the role free or traction. "
-                      "Displacements of contact laws are then relative to it, "
-                      "and the gap has the initial distance along the normal "
-                      "added. Give it to the side with the finer mesh, or to "
-                      "the smaller one: nodes with nothing opposite do not "
-                      "touch. Sliding has to be small beside a cell. Empty for "
-                      "a rigid foundation.");
+                      "Displacements are then relative to it, and the initial "
+                      "distance is added to the gap. Give it to the side with "
+                      "the finer mesh, or to the smaller one. Empty for a "
+                      "rigid foundation.");
     prm.add_parameter("Gap",
                       gap,
                       "g(x,t) of unilateral contact and normal compliance: how "
@@ -466,22 +455,17 @@ namespace Viscoplastic
                "How z' = G is integrated. `automatic': as the paper does, by "
                "forward Euler; in runs to `Error control/Tolerance' by Heun's "
                "method, and beyond its stability limit by backward Euler. "
-               "`forward Euler': G at the "
-               "beginning of the step, the scheme of the paper, first "
-               "order, stable for steps up to 2/r with the relaxation "
-               "rate r. `backward Euler': G at the end of the step, "
-               "first order, stable for all steps; steps cost more "
-               "where G is not linear. `Heun': the mean of G at the "
-               "beginning and at what forward Euler predicts for the "
-               "end, second order, stable up to 2/r, twice the price of "
-               "forward Euler.");
+               "`forward Euler': G at the beginning of the step, first order, "
+               "stable for steps up to 2/r with the relaxation rate r. "
+               "`backward Euler': G at its end, first order, stable for all "
+               "steps, which cost more where G is not linear. `Heun': the mean "
+               "of G at the beginning and at what forward Euler predicts for "
+               "the end, second order, stable up to 2/r, twice the price.");
     add_choice(prm,
                "Stiffness policy",
                stiffness_policy,
                "What becomes of a step of an explicit scheme beyond its "
-               "stability limit 2/r. `refuse' ends the run with a "
-               "sentence; `subdivide' divides the step into equal ones "
-               "within the limit; `backward Euler' takes it by that "
-               "scheme.");
+               "stability limit 2/r. `refuse' ends the run; `subdivide' "
+               "divides the step; `backward Euler' takes it by that scheme.");
   }
 } // namespace Viscoplastic

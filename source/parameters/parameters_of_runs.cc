@@ -29,20 +29,17 @@ namespace Viscoplastic
     prm.add_parameter(
       "Land on kinks",
       land_on_kinks,
-      "Whether steps chosen by their error end where data have "
-      "kinks in time (`min', `abs', `if', ...), and just before "
-      "and after jumps. These times are looked for at the "
-      "beginning and named. Steps of `Time/Phases' stay as they are, "
-      "but no rate is extrapolated across these times.");
-    add_choice(prm,
-               "Resolve events",
-               resolve_events,
-               "Whether steps in which slip begins somewhere, comes to cover "
-               "all of the face, ends everywhere or turns back are divided "
-               "until they are as short as `Event tolerance' says. "
-               "`automatic': they are, but for runs to `Error control/"
-               "Tolerance', whose steps need not be shorter than their errors "
-               "ask for.");
+      "Whether steps chosen by their error end where data have kinks in time "
+      "(`min', `abs', `if', ...), and just before and after jumps. Steps of "
+      "`Time/Phases' stay as they are.");
+    add_choice(
+      prm,
+      "Resolve events",
+      resolve_events,
+      "Whether steps in which slip begins somewhere, comes to cover "
+      "all of the face, ends everywhere or turns back are divided "
+      "until they are as short as `Event tolerance' says. "
+      "`automatic': they are, but for runs to `Error control/Tolerance'.");
     prm.add_parameter("Event tolerance",
                       event_tolerance,
                       "How exactly the times of such events are found, "
@@ -59,9 +56,8 @@ namespace Viscoplastic
     prm.add_parameter("Smallest step",
                       smallest_step,
                       "Steps of this size are accepted whatever their error, "
-                      "so that jumps of the data do not end a run, and a step "
-                      "that fails is not divided further; 0 for 1e-6 of the "
-                      "length of the phase. Unit: time.",
+                      "and a step that fails is not divided further; 0 for "
+                      "1e-6 of the length of the phase. Unit: time.",
                       Patterns::Double(0.));
   }
 
@@ -83,9 +79,9 @@ namespace Viscoplastic
       "Contact tolerance",
       contact_tolerance,
       "Bound on the algebraic error of each step in the energy norm, relative "
-      "to the solution, at which the active set and linear iterations stop. "
-      "0: `Error control/Algebraic fraction' of the estimated discretization "
-      "error. What lies between 0 and 1e-14, below rounding, is refused.",
+      "to the solution, at which the active set and linear iterations stop. 0: "
+      "`Error control/Algebraic fraction' of the estimated discretization "
+      "error. Not between 0 and 1e-14.",
       Patterns::Double(0., 0.1));
     prm.add_parameter("Maximal contact iterations",
                       maximal_iterations,
@@ -96,16 +92,13 @@ namespace Viscoplastic
       "Coulomb pressure",
       coulomb_pressure,
       "In unilateral contact and normal compliance, the pressure p of the "
-      "friction bound mu p. "
-      "`Newton': that of the step itself, found together with the "
-      "displacement at the price of given bounds. "
-      "`fixed point': that of the step itself, too; the step is solved again "
-      "with the pressure that has come out until the bounds stay, and the run "
-      "ends with a sentence where they do not, as for large mu. For "
-      "comparison. "
-      "`lagged': that of the end of the step before, so that each step has one "
-      "solution and is solved once; the error is of first order in the step, "
-      "and large where steps are.");
+      "friction bound mu p. `Newton': that of the step itself, found together "
+      "with the displacement at the price of given bounds. `fixed point': that "
+      "of the step itself, too; the step is solved again with the pressure "
+      "that has come out until the bounds stay, and the run ends where they do "
+      "not; for comparison. `lagged': that of the end of the step before, so "
+      "that each step has one solution and is solved once; the error is of "
+      "first order in the step, and large where steps are.");
     prm.add_parameter(
       "Coulomb tolerance",
       coulomb_tolerance,
@@ -114,11 +107,9 @@ namespace Viscoplastic
       Patterns::Double(1e-14, 1.));
     prm.add_parameter("Reuse unchanged",
                       reuse_unchanged,
-                      "Keep what a step does not change instead of computing "
-                      "it again: the solution where neither loads, prescribed "
-                      "displacements, bounds and foundations nor the "
-                      "irreversible stress have changed, with its forces, "
-                      "rates and estimates. Nothing is neglected.");
+                      "Keep the solution of the step before, with its forces, "
+                      "rates and estimates, where nothing has changed that it "
+                      "depends on.");
   }
 
 
@@ -138,20 +129,15 @@ namespace Viscoplastic
     prm.add_parameter(
       "Quantity",
       quantity,
-      "A column of statistics.csv whose error is estimated by "
-      "duality, too: the work of friction, or a component of "
-      "the friction force, of the force of contact that opens, "
-      "of the reaction of a boundary, of the displacement of "
-      "one of `Output/Points', or in generalized plane strain the axial strain "
-      "or force that is not given; of forces of friction and contact also "
-      "that on one of several boundaries; as in `friction_dissipation', "
-      "`friction_force_x', `contact_force_y', "
-      "`reaction_1_y', `point0_x', `axial_strain', `axial_force', or with names `reaction_y of roof', "
-      "`contact_force_y of floor', `displacement_x of crown'. `Tolerance' is that of this "
-      "quantity then, relative to its largest value, and "
-      "meshes are refined where it feels their errors; all steps "
-      "are made twice, first to find one mesh for all times. "
-      "Empty: the energy norm.");
+      "A column of statistics.csv whose error is estimated, too, and for which "
+      "`Tolerance' is then, relative to its largest value: "
+      "`friction_dissipation', a force such as `friction_force_x', "
+      "`contact_force_y', also on one of several boundaries, `reaction_1_y', a "
+      "displacement `point0_x' of `Output/Points', or in generalized plane "
+      "strain `axial_strain' or `axial_force'; with names `reaction_y of "
+      "roof', `contact_force_y of floor', `displacement_x of crown'. All steps "
+      "are made twice then, first to find one mesh for all times. Empty: the "
+      "energy norm.");
     prm.add_parameter("Error bar",
                       error_estimator,
                       "Estimate the error of every step in the energy norm: "
@@ -212,9 +198,8 @@ namespace Viscoplastic
     prm.add_parameter(
       "Budget",
       budget,
-      "The study begins no run that is not expected to end "
-      "within this time, and contrib/price no run that is expected "
-      "to take longer. Unit: seconds.",
+      "Studies and prices begin no run that is not expected to end within this "
+      "time. Unit: seconds.",
       Patterns::Double(1.));
   }
 
@@ -249,9 +234,8 @@ namespace Viscoplastic
                       smallest_share,
                       "The mesh stays as it is while the cells to be refined "
                       "have less than this share of the squared estimate, and "
-                      "coarsening would not remove a tenth of all cells. A new "
-                      "mesh would lower the estimate by less than about half "
-                      "this fraction. With 0 it always changes.",
+                      "coarsening would not remove a tenth of all cells. With "
+                      "0 it always changes.",
                       Patterns::Double(0., 1.));
     prm.add_parameter("Minimal level",
                       minimal_level,
@@ -333,10 +317,8 @@ namespace Viscoplastic
       "What statistics.csv has of these points besides the displacement, "
       "separated by commas. The fields are those of the outputs (see "
       "`Additional fields', which need not have them), `history' of laws with "
-      "history variables; a stress or strain is "
-      "that of the cell of the point, between cells that of the one whose "
-      "center has the least coordinates, x first. From `slip' on they are "
-      "fields of Gamma_3, which the points on it have.");
+      "history variables; a stress or strain is that of the cell of the point. "
+      "From `slip' on they are fields of Gamma_3, which the points on it have.");
     prm.add_parameter("Lines",
                       lines,
                       "Straight lines through the body as `begin : end : "
@@ -396,11 +378,9 @@ namespace Viscoplastic
     prm.add_parameter("Wall time limit",
                       wall_time_limit,
                       "How long the run may take, counted from the start of "
-                      "the program. It ends after the last step beyond which "
-                      "another, as long as that one, would pass the limit: "
-                      "with a checkpoint, the estimated error so far, and "
-                      "exit code 3; --restart goes on. 0 for no limit. Unit: "
-                      "seconds.",
+                      "the program. It ends in time for that with a "
+                      "checkpoint, the estimated error so far and exit code 3; "
+                      "--restart goes on. 0 for no limit. Unit: seconds.",
                       Patterns::Double(0.));
     prm.add_parameter("Directory",
                       directory,
@@ -408,8 +388,7 @@ namespace Viscoplastic
                       "directory of the results.");
     prm.add_parameter("Keep",
                       keep,
-                      "How many of the last checkpoints are kept. The older "
-                      "ones are for the case that the last one is damaged.",
+                      "How many of the last checkpoints are kept.",
                       Patterns::Integer(1));
   }
 } // namespace Viscoplastic

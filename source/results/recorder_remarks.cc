@@ -7,6 +7,7 @@
 #include <viscoplastic_contact/results/recorder.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <iomanip>
 #include <limits>
@@ -99,6 +100,35 @@ namespace Viscoplastic
                    "results may be wrong by about that, relatively, which no "
                    "error bar has.");
       return text.str();
+    }
+
+
+
+    /// The center and the width of a cell of the finest level: of the one whose
+    /// center comes first, x before y. Collective.
+    template <int dim>
+    std::pair<Point<dim>, double>
+    finest_cell(const Triangulation<dim> &triangulation)
+    {
+      std::array<double, dim + 2> best; // -level, center, width
+      best.fill(std::numeric_limits<double>::infinity());
+      for (const auto &cell : triangulation.active_cell_iterators())
+        if (cell->is_locally_owned())
+          {
+            std::array<double, dim + 2> found;
+            found[0] = -cell->level();
+            for (unsigned int d = 0; d < dim; ++d)
+              found[d + 1] = cell->center()[d];
+            found[dim + 1] = cell->minimum_vertex_distance();
+            best           = std::min(best, found);
+          }
+      const auto of_ranks =
+        Utilities::MPI::all_gather(triangulation.get_communicator(), best);
+      best = *std::min_element(of_ranks.begin(), of_ranks.end());
+      Point<dim> center;
+      for (unsigned int d = 0; d < dim; ++d)
+        center[d] = best[d + 1];
+      return {center, best[dim + 1]};
     }
   } // namespace
 
@@ -252,8 +282,17 @@ namespace Viscoplastic
            << refinement.cell_budget << '.';
     else if (discretization->space.dof_handler.get_triangulation()
                .n_global_levels() > refinement.maximal_level)
-      text << "it takes cells beyond 'Mesh refinement/Maximal level' = "
-           << refinement.maximal_level << '.';
+      {
+        const auto [place, width] =
+          finest_cell(discretization->space.dof_handler.get_triangulation());
+        text << "it takes cells beyond 'Mesh refinement/Maximal level' = "
+             << refinement.maximal_level << "; at x = (" << place
+             << ") they are " << width << scene.unit(Quantity::length)
+             << " wide. Where a single node holds or loads the body, "
+                "displacements grow without bound with ever smaller cells: "
+                "spread that over a face, or choose the level by how wide it "
+                "is.";
+      }
     else if (budget->unavoidable > 0.)
       text << "finer meshes do not lower it.";
     else if (budget->expected_size > size)
@@ -319,17 +358,19 @@ namespace Viscoplastic
         "pressure' = Newton mend this.");
 
     // What is missing is the work of friction, see EnergyBalance.
-    if (const double missing = std::abs(balance.defect()),
+    if (const double missing = balance.defect(),
         friction             = balance.friction_dissipation();
-        run.has_friction && !scene.has_stages() && missing > 0.1 * friction &&
-        missing > 1e-3 * balance.scale())
+        run.has_friction && !scene.has_stages() &&
+        std::abs(missing) > 0.1 * friction &&
+        std::abs(missing) > 1e-3 * balance.scale())
       result.push_back(
-        "Note: the energy balance is missing " +
-        number(100. * missing / friction, 2) +
-        " % of the friction dissipation, which may be wrong by about that: it "
-        "takes the friction at the ends of steps, which changes within them; "
-        "shorter steps mend this, which 'Error control/Quantity' = "
-        "friction_dissipation chooses.");
+        "Note: friction has dissipated " + number(friction) +
+        scene.unit(Quantity::energy) + ", by the balance of energy rather " +
+        number(std::max(friction + missing, 0.), 3) +
+        scene.unit(Quantity::energy) +
+        ": the sum takes the friction at the ends of steps, which changes "
+        "within them; shorter steps mend this, which 'Error control/Quantity' "
+        "= friction_dissipation chooses.");
 
     if (run.has_zero_quantity())
       result.push_back("Warning: '" +

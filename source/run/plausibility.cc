@@ -151,6 +151,36 @@ namespace Viscoplastic
 
 
 
+    /// Whether nothing balances the loads at time t: among the rigid motions
+    /// that contact alone can prevent, that along which they do most work takes
+    /// the body off all of its foundations. Collective.
+    template <int dim>
+    bool
+    loads_pull_off(const Discretization<dim> &discretization, const double t)
+    {
+      const AdmissibleSpace<dim> &space = discretization.space;
+      for (const auto &condition : discretization.scene().boundary)
+        if (condition.second.has_friction() &&
+            !condition.second.has_computed_pressure())
+          return false; // friction without pressure
+      const Load<dim>   load   = discretization.loads.assemble(t);
+      DistributedVector motion = space.owned_vector();
+      for (const DistributedVector &free : space.motions_held_by_contact())
+        motion.add(load.values * free, free);
+      const ContactLayout &layout = discretization.face->layout();
+      const Vector<double> x =
+        discretization.face->restriction().gather(motion);
+      double nearest = -std::numeric_limits<double>::infinity();
+      for (const ContactLayout::Point &point : layout.points)
+        if (point.is_obstacle)
+          nearest = std::max(nearest,
+                             slip(point, layout.node_values(x, point.node))[0]);
+      return Utilities::MPI::max(nearest, space.communicator) <
+             -1e-6 * motion.linfty_norm();
+    }
+
+
+
     /// The largest of the values, or norms, of data at places and times.
     template <int dim>
     class DataSampler
@@ -417,6 +447,17 @@ namespace Viscoplastic
             (condition.against ? "both" : "the body") +
             "; small strains are assumed.");
       }
+    if (discretization.space.is_held_by_contact() && discretization.face)
+      for (const double t :
+           {scene.schedule.step(1).t, scene.schedule.end_time()})
+        if (loads_pull_off(discretization, t))
+          {
+            result.push_back("the loads at t = " + number(t) +
+                             units.suffix(Quantity::time, dim) +
+                             " pull the body off its foundation, and nothing "
+                             "else holds it.");
+            break;
+          }
     if (!units.are_declared())
       return result;
 

@@ -228,6 +228,43 @@ class Check(Manners):
             words = "'Boundary 1/Foundation displacement' is never negative"
             self.assertEqual(words in text, is_told)
 
+    def test_loads_that_pull_the_body_off(self):
+        """A weight with the wrong sign, of a body that nothing but the floor holds."""
+        scene = """
+            subsection Geometry
+              set Arguments = 4, 4 : 0, 0 : 1, 1 : true
+            end
+            subsection Boundary 0
+              set Role = free
+            end
+            subsection Boundary 1
+              set Role = traction
+              set Traction = 0.001; 0
+            end
+            subsection Boundary 2
+              set Role                 = contact
+              set Contact law          = unilateral
+              set Friction law         = coulomb
+              set Friction coefficient = 0.5
+            end
+            subsection Boundary 3
+              set Role = free
+            end"""
+        (self.work / "weight.prm").write_text(scene)
+        held = "Boundary 0/Role=clamped"
+        for weight, more, is_told in (
+            ("0.01", (), True),
+            ("0.01*(t - 0.5)", (), True),
+            ("-0.01", (), False),
+            ("0.01", ("--set", held), False),
+        ):
+            force = f"Loads/Body force=0; {weight}"
+            text = self.call(
+                "--check", "weight.prm", "--set", "Initial state/Equilibrate=true",
+                "--set", force, *more,
+            ).stdout
+            self.assertEqual("pull the body off its foundation" in text, is_told)
+
     def test_refuses_what_a_run_refuses(self):
         process = self.call(
             "--check", SLAB, "--set", "Material/Young's modulus=-1", code=1

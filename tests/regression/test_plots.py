@@ -63,6 +63,8 @@ MANUFACTURED = SOURCE / "prm" / "verification" / "manufactured"
 class Mesh:
     """What pictures use of a record."""
 
+    rest = 0.0
+
     def __init__(self, points, cells, **data):
         self.points = np.array(points, dtype=float)
         self.cells = np.array(cells)
@@ -109,6 +111,7 @@ def block(*extent, cells=(4, 2, 3), displacement=0.0):
         boundary=lambda: None,
         dimension=lambda: dim,
         is_of_revolution=lambda: False,
+        rest=0.0,
     )
 
 
@@ -149,6 +152,7 @@ def sliding_block():
         boundary=lambda: None,
         dimension=lambda: 3,
         is_of_revolution=lambda: False,
+        rest=0.0,
     )
 
 
@@ -494,6 +498,14 @@ class Numbers(TestCase):
             self.assertEqual(
                 friction_state(mesh).tolist(), [sticks, style.SLIPPING, open_, last]
             )
+        # at its bound, and slower than what counts in the run
+        mesh.rest = 0.05
+        mesh.data["slip_rate"][1, 0] = 0.04
+        self.assertEqual(friction_state(mesh).tolist(), [sticks, sticks, open_, sticks])
+        # beside one that slips
+        mesh.data["stick"][0], mesh.data["slip_rate"][0, 0] = 0, 0.1
+        found = friction_state(mesh).tolist()
+        self.assertEqual(found, [style.SLIPPING, sticks, open_, open_])
 
     def test_runs_of_states(self):
         self.assertEqual(
@@ -550,6 +562,17 @@ class Numbers(TestCase):
         peaked = style.Shade(np.append(np.linspace(0, 1, 999), 50.0), "test")
         self.assertLess(peaked.norm.vmax, 1.01)
         self.assertEqual(peaked.extend, "max")
+        # ten of a thousand values, in a minute of a day
+        early = np.append(np.linspace(0, 1, 990), np.full(10, 50.0))
+        minute = np.append(np.full(990, 1.0), np.full(10, 1 / 1440))
+        for weights, most in ((None, 50.0), (minute, 1.0)):
+            shade = style.Shade(early, "test", weights=weights)
+            self.assertClose(shade.norm.vmax, most, relative=0.01)
+        # one corner of a face of thirty nodes, and the middle of one of five
+        for n, largest, expected in ((30, 9, 1), (5, 9, 9), (30, 1.4, 1.4)):
+            values = np.append(np.linspace(0, 1, n), largest)
+            found, _ = style.robust(values, **style.FEW)
+            self.assertClose(found, expected, relative=0.1)
         for values in ([0.1, 1.0], [-1.0, -0.1]):
             shade = style.Shade(np.array(values), "test")
             dark, light = (

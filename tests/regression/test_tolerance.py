@@ -334,7 +334,7 @@ class Missed(TestCase):
 
     def test_for_levels(self):
         self.check(
-            "'Mesh refinement/Maximal level' = 2",
+            r"'Mesh refinement/Maximal level' = 2; at x = \(\S+ \S+\) they are 0.0625 wide",
             **{"Mesh refinement/Maximal level": 2},
         )
 

@@ -18,13 +18,15 @@ class NotAvailable(UserError):
 
 
 class Record:
-    """One time of a series: points, cells and point data of all its pieces.
+    """One time of a series: points, cells and point data of all its pieces, and
+    below which slip rate it counts as at `rest`.
 
     deal.II writes each cell with vertices of its own, and a quantity constant
     on a cell as point data with that value at all of them.
     """
 
-    def __init__(self, path):
+    def __init__(self, path, rest=0.0):
+        self.rest = rest
         # Not needed by who reads numbers alone, and slow to start.
         import meshio
 
@@ -280,12 +282,21 @@ class Results:
         """The statistics as a pandas.DataFrame."""
         return frame(self.statistics)
 
+    @cached_property
+    def rest(self):
+        """The slip rate with which a point slips in all of the run by a millionth of
+        what the fastest points slip in all steps together."""
+        slips, times = (self.statistics.get(name, ()) for name in ("max_slip", "t"))
+        if len(slips) < 2 or len(times) < 2:
+            return 0.0
+        return 1e-6 * np.sum(slips[1:]) / (times[-1] - times[0])
+
     def read(self, path):
         """A record; those read last are kept, for pictures of the same time."""
         if path not in self.records:
             while len(self.records) >= 4:
                 del self.records[next(iter(self.records))]
-            self.records[path] = Record(path)
+            self.records[path] = Record(path, self.rest)
         return self.records[path]
 
     def index(self, step=None, time=None):

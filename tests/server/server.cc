@@ -216,6 +216,17 @@ namespace
 
 
 
+  /// MPI, unless it has been started.
+  struct StartedMPI
+  {
+    int                                        n_arguments = 0;
+    char                                      *none        = nullptr;
+    char                                     **arguments   = &none;
+    dealii::Utilities::MPI::StartUnlessStarted mpi{n_arguments, arguments, 1};
+  };
+
+
+
   /// What a line asks for, again and again, on as many ranks as there are.
   /// Arguments: the limits of a run in a fork, in the order of Limits.
   int
@@ -223,16 +234,11 @@ namespace
   {
     if (arguments.size() != 3)
       return 2;
-    const Limits limits{std::stoul(arguments[0]),
+    const Limits     limits{std::stoul(arguments[0]),
                         static_cast<unsigned int>(std::stoul(arguments[1])),
                         std::stoul(arguments[2])};
-    char        *no_arguments[]     = {nullptr};
-    char       **argv               = no_arguments;
-    int          n_hidden_arguments = 0;
-    const bool   is_single          = Viscoplastic::run_without_mpi_job();
-    const dealii::Utilities::MPI::MPI_InitFinalize mpi(n_hidden_arguments,
-                                                       argv,
-                                                       1);
+    const bool       is_single = Viscoplastic::run_without_mpi_job();
+    const StartedMPI mpi;
     if (is_single)
       serve_by_forks(limits);
     else
@@ -306,13 +312,13 @@ namespace
 
   /// Until nobody has asked for a minute.
   void
-  serve_at_socket(const char *path)
+  serve_at_socket(const std::string &path)
   {
     const int   listener = socket(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0);
     sockaddr_un address{};
     address.sun_family = AF_UNIX;
-    std::strncpy(address.sun_path, path, sizeof(address.sun_path) - 1);
-    unlink(path);
+    path.copy(address.sun_path, sizeof(address.sun_path) - 1);
+    unlink(path.c_str());
     if (bind(listener,
              reinterpret_cast<const sockaddr *>(&address),
              sizeof(address)) != 0 ||
@@ -333,17 +339,27 @@ namespace
           }
         close(client);
       }
-    unlink(path);
+    unlink(path.c_str());
   }
 } // namespace
 
 
 
-/// Arguments: the path of a socket, or those of serve().
+/// Arguments: the path of a socket, or those of serve(). There are two
+/// processes for clients: ranks of a job start MPI themselves, single ones find
+/// it started.
 int
 main(int argc, char *argv[])
 {
   if (argc != 2)
     return serve({argv + 1, argv + argc});
-  serve_at_socket(argv[1]);
+  const std::string path = argv[1];
+  if (fork() == 0)
+    {
+      Viscoplastic::run_without_mpi_job();
+      const StartedMPI mpi;
+      serve_at_socket(path + ".single");
+      _exit(0);
+    }
+  serve_at_socket(path);
 }

@@ -25,7 +25,6 @@ import weakref
 import xml.etree.ElementTree as xml
 from pathlib import Path
 
-import meshio
 import numpy as np
 
 SOURCE = Path(__file__).resolve().parents[2]
@@ -204,8 +203,10 @@ class Run:
             record.parent / e.attrib["Source"]
             for e in xml.parse(record).getroot().iter("Piece")
         ]
-        # meshio cannot read files without points, which ranks without a face
-        # of the contact write
+        import meshio  # takes longer than all other imports, and few tests need it
+
+        # It cannot read files without points, which ranks without a face of the
+        # contact write.
         return Fields([meshio.read(file) for file in files if has_points(file)])
 
     @property

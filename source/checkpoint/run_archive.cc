@@ -10,7 +10,7 @@ namespace Viscoplastic
   {
     const std::string run_file = "run.bin";
     const std::string version =
-      VISCOPLASTIC_CONTACT_VERSION " (" VISCOPLASTIC_CONTACT_GIT_REVISION ")";
+      std::string(program_version) + " (" + git_revision + ")";
 
     std::string
     mesh_file(const unsigned int rank)

@@ -217,8 +217,8 @@ namespace Viscoplastic
   {
     const Parameters   parameters(files, files.empty() ? scene : overrides);
     std::ostringstream out;
-    out << "# All parameters of viscoplastic_contact "
-        << VISCOPLASTIC_CONTACT_VERSION << "\n#\n"
+    out << "# All parameters of viscoplastic_contact " << program_version
+        << "\n#\n"
         << wrap(introduction, "# ") << "#\n"
         << wrap("`#' begins a comment, a backslash at the end of a line "
                 "continues it, `include other.prm' reads another file. This "

@@ -154,15 +154,14 @@ namespace Viscoplastic
     const std::time_t now = std::time(nullptr);
     char              date[32];
     std::strftime(date, sizeof(date), "%FT%TZ", std::gmtime(&now));
-    nlohmann::ordered_json record{
-      {"program", "viscoplastic_contact"},
-      {"version", VISCOPLASTIC_CONTACT_VERSION},
-      {"git_revision", VISCOPLASTIC_CONTACT_GIT_REVISION},
-      {"dealii_version", DEAL_II_PACKAGE_VERSION},
-      {"n_mpi_ranks", n_ranks},
-      {"dimension", dim},
-      {"effects", scene.effects()}};
-    const Units &units = scene.parameters.units;
+    nlohmann::ordered_json record{{"program", "viscoplastic_contact"},
+                                  {"version", program_version},
+                                  {"git_revision", git_revision},
+                                  {"dealii_version", DEAL_II_PACKAGE_VERSION},
+                                  {"n_mpi_ranks", n_ranks},
+                                  {"dimension", dim},
+                                  {"effects", scene.effects()}};
+    const Units           &units = scene.parameters.units;
     if (units.are_declared())
       record["units"] = {{"length", units.length.name},
                          {"time", units.time.name},

@@ -11,9 +11,9 @@ namespace Viscoplastic
   Announcer<dim>::announce(const Scene<dim> &scene)
   {
     std::ostream &out = console.stream();
-    out << "viscoplastic_contact " << VISCOPLASTIC_CONTACT_VERSION << " ("
-        << VISCOPLASTIC_CONTACT_GIT_REVISION << "), " << scene.parameters.file
-        << " on " << Utilities::MPI::n_mpi_processes(MPI_COMM_WORLD)
+    out << "viscoplastic_contact " << program_version << " (" << git_revision
+        << "), " << scene.parameters.file << " on "
+        << Utilities::MPI::n_mpi_processes(MPI_COMM_WORLD)
         << " MPI rank(s)\nEffects:\n";
     for (const std::string &effect : scene.effects())
       out << "  " << effect << '\n';

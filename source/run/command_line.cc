@@ -319,8 +319,7 @@ namespace Viscoplastic
   std::string
   version_text()
   {
-    return "viscoplastic_contact " VISCOPLASTIC_CONTACT_VERSION
-           " (" VISCOPLASTIC_CONTACT_GIT_REVISION
-           "), deal.II " DEAL_II_PACKAGE_VERSION "\n";
+    return "viscoplastic_contact " + std::string(program_version) + " (" +
+           git_revision + "), deal.II " DEAL_II_PACKAGE_VERSION "\n";
   }
 } // namespace Viscoplastic

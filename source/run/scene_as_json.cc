@@ -211,8 +211,8 @@ namespace Viscoplastic
                 const MPI_Comm    communicator)
   {
     const TimeSchedule schedule(scene.time.phases); // throws
-    Json               json{{"version", VISCOPLASTIC_CONTACT_VERSION},
-              {"revision", VISCOPLASTIC_CONTACT_GIT_REVISION},
+    Json               json{{"version", program_version},
+              {"revision", git_revision},
               {"ranks", Utilities::MPI::n_mpi_processes(communicator)},
               {"file", scene.file},
               {"directory", results_directory(scene)},

@@ -88,7 +88,7 @@ class Server:
 
     def __init__(self, executable, limits):
         self.server = program_server.Server(
-            executable, limits.cpu, limits.clock, limits.memory or 0, environment()
+            [executable], limits.cpu, limits.clock, limits.memory or 0, environment()
         )
         self.close = self.server.close
 

@@ -13,7 +13,6 @@ KEEP_RESULTS to a directory to keep them.
 
 import atexit
 import csv
-import functools
 import json
 import os
 import re
@@ -26,7 +25,6 @@ import weakref
 import xml.etree.ElementTree as xml
 from pathlib import Path
 
-import meshio
 import numpy as np
 
 SOURCE = Path(__file__).resolve().parents[2]
@@ -37,8 +35,10 @@ import program_server
 EXECUTABLE = os.environ.get(
     "VISCOPLASTIC_CONTACT", str(SOURCE / "build" / "viscoplastic_contact")
 )
-# The program for many runs of one process (tests/server), or none.
+# The program for many runs (tests/server), or none, and what stands for the program
+# where a test is not about its process.
 SERVER = os.environ.get("VISCOPLASTIC_CONTACT_SERVER")
+PROGRAM = program_server.CLIENT if SERVER else EXECUTABLE
 MPIRUN = ["mpirun", "--allow-run-as-root", "--oversubscribe", "--bind-to", "none"]
 
 # The algebraic error at which iterations stop at the latest where a scene leaves
@@ -203,8 +203,10 @@ class Run:
             record.parent / e.attrib["Source"]
             for e in xml.parse(record).getroot().iter("Piece")
         ]
-        # meshio cannot read files without points, which ranks without a face
-        # of the contact write
+        import meshio  # takes longer than all other imports, and few tests need it
+
+        # It cannot read files without points, which ranks without a face of the
+        # contact write.
         return Fields([meshio.read(file) for file in files if has_points(file)])
 
     @property
@@ -249,20 +251,6 @@ def study_command(*arguments):
     return [sys.executable, "-m", "viscoplastic_contact.study", *map(str, arguments)]
 
 
-@functools.cache
-def started_program():
-    """What the environment of those needs that start the program again and again, of
-    which most starts take longer than the run: one that has started, if there is a
-    server."""
-    if not SERVER:
-        return {"VISCOPLASTIC_CONTACT": str(EXECUTABLE)}
-    one = program_server.SocketServer(
-        SERVER, EXECUTABLE, {**os.environ, "OMP_NUM_THREADS": "1"}
-    )
-    atexit.register(one.close)
-    return one.environment
-
-
 def study_environment():
     """What contrib/study gives to its runs, for tests on few cores."""
     return {
@@ -270,7 +258,7 @@ def study_environment():
         "OMP_NUM_THREADS": "1",
         "PYTHONPATH": str(SOURCE / "contrib" / "python"),
         "PYTHONDONTWRITEBYTECODE": "1",
-        **started_program(),
+        "VISCOPLASTIC_CONTACT": PROGRAM,
         "OMPI_ALLOW_RUN_AS_ROOT": "1",
         "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1",
         "OMPI_MCA_rmaps_base_oversubscribe": "1",
@@ -303,12 +291,11 @@ def server(ranks):
     """The program, started at its first run; no limits but an hour."""
     if ranks not in _servers or _servers[ranks].has_ended():
         _servers[ranks] = program_server.Server(
-            SERVER,
+            [*launcher(ranks), PROGRAM, "--serve"],
             3600,
             3600,
             0,
             {**os.environ, "OMP_NUM_THREADS": "1"},
-            launcher(ranks),
         )
         atexit.register(_servers[ranks].close)
     return _servers[ranks]

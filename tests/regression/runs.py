@@ -58,9 +58,9 @@ class Job:
         )
         return [*options, str(file), str(variant)]
 
-    def start(self, *options, ranks=1, **arguments):
+    def start(self, *options, ranks=1, program=EXECUTABLE, **arguments):
         return subprocess.Popen(
-            [*launcher(ranks), EXECUTABLE, *self.arguments(*options)],
+            [*launcher(ranks), program, *self.arguments(*options)],
             cwd=self.work,
             env={**os.environ, "OMP_NUM_THREADS": "1"},
             stdout=subprocess.PIPE,

@@ -21,7 +21,7 @@ from pathlib import Path
 
 import numpy as np
 
-from harness import EXECUTABLE, SOURCE, Run, TestCase, main, run
+from harness import PROGRAM, SOURCE, Run, TestCase, main, run
 
 sys.path.insert(0, str(SOURCE / "contrib"))
 from results_page import page as accuracy
@@ -79,7 +79,7 @@ def entries():
     """{section: {entry, ...}} as the program describes them; the numbers of
     numbered sections are left out."""
     text = subprocess.run(
-        [EXECUTABLE, "--describe"], stdout=subprocess.PIPE, text=True, check=True
+        [PROGRAM, "--describe"], stdout=subprocess.PIPE, text=True, check=True
     ).stdout
     result, path = {}, []
     for line in text.splitlines():
@@ -384,7 +384,7 @@ class OwnScene(TestCase):
     def program(self, *arguments):
         """Run in a directory that holds the files of the page."""
         return subprocess.run(
-            [EXECUTABLE, *arguments],
+            [PROGRAM, *arguments],
             cwd=self.work,
             env={**os.environ, "OMP_NUM_THREADS": "1"},
             capture_output=True,

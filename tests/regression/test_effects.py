@@ -19,7 +19,7 @@ from pathlib import Path
 import numpy as np
 
 from harness import (
-    EXECUTABLE,
+    PROGRAM,
     SOURCE,
     TestCase,
     as_prm,
@@ -561,7 +561,7 @@ class Effects(TestCase):
         """Is ended, and says nothing; nor do numbers that no solver stands."""
         with Folder(VERIFICATION / "slab.prm", **SLAB) as scene:
             study = effects.EffectsStudy(
-                Program(EXECUTABLE), scene.arguments(), [], Console()
+                Program(PROGRAM), scene.arguments(), [], Console()
             )
             self.assertTrue(study.compute_scene(0))
             (never,) = (v for v in effect_variants(study.scene, 1.0, "") if v.is_extreme)

@@ -7,15 +7,7 @@ import subprocess
 import tempfile
 from pathlib import Path
 
-from harness import (
-    EXECUTABLE,
-    MPIRUN,
-    TestCase,
-    main,
-    run,
-    run_program,
-    scene_file,
-)
+from harness import MPIRUN, PROGRAM, TestCase, main, run, run_program, scene_file
 
 SMALL = {
     "Geometry/Arguments": "4, 2 : 0, 0 : 2, 1 : true",
@@ -48,7 +40,7 @@ class Refused(TestCase):
     def test_missing_file(self):
         with tempfile.TemporaryDirectory() as work:
             process = subprocess.run(
-                [EXECUTABLE, str(Path(work) / "absent.prm")],
+                [PROGRAM, str(Path(work) / "absent.prm")],
                 capture_output=True,
                 text=True,
             )
@@ -636,7 +628,7 @@ class Refused(TestCase):
         """They end by themselves, with one sentence: nothing of an abort."""
         for wrong in "Dimension=7", "Boundary 0/Traction=0.3; 0":
             process = subprocess.run(
-                [*MPIRUN, "-q", "-n", "3", EXECUTABLE, str(scene_file("slab"))]
+                [*MPIRUN, "-q", "-n", "3", PROGRAM, str(scene_file("slab"))]
                 + ["--set", wrong],
                 capture_output=True,
                 text=True,
@@ -648,8 +640,8 @@ class Refused(TestCase):
         """Others wait for it: it speaks and ends them all."""
         slab = str(scene_file("slab"))
         process = subprocess.run(
-            [*MPIRUN, "-n", "1", EXECUTABLE, slab, ":"]
-            + ["-n", "1", EXECUTABLE, slab, "--set", "Dimension=7"],
+            [*MPIRUN, "-n", "1", PROGRAM, slab, ":"]
+            + ["-n", "1", PROGRAM, slab, "--set", "Dimension=7"],
             capture_output=True,
             text=True,
             timeout=60,

@@ -12,7 +12,7 @@ import tempfile
 from pathlib import Path
 
 import law_example
-from harness import EXECUTABLE, SOURCE, TestCase, main, run, run_program
+from harness import EXECUTABLE, PROGRAM, SOURCE, TestCase, main, run, run_program
 
 # Where the package files of the build are.
 PACKAGE = Path(EXECUTABLE).parent
@@ -238,7 +238,7 @@ class Example(Libraries):
         run_program([results / "parameters.prm"], 1, there, code=0)
 
         described = subprocess.run(
-            [EXECUTABLE, "--describe", scene], stdout=subprocess.PIPE, text=True
+            [PROGRAM, "--describe", scene], stdout=subprocess.PIPE, text=True
         ).stdout
         self.assertIn("set Stress scale = 4e6", described)
         self.assertIn("Garofalo, Fundamentals", re.sub(r"\s+#\s+", " ", described))
@@ -246,7 +246,7 @@ class Example(Libraries):
         run_program(["--check", there / "described.prm"], 1, there, code=0)
         manual = subprocess.run(
             [SOURCE / "contrib" / "make_parameters", scene],
-            env={**os.environ, "VISCOPLASTIC_CONTACT": str(EXECUTABLE)},
+            env={**os.environ, "VISCOPLASTIC_CONTACT": PROGRAM},
             stdout=subprocess.PIPE,
             text=True,
         ).stdout

@@ -9,7 +9,7 @@ import subprocess
 import tempfile
 from pathlib import Path
 
-from harness import EXECUTABLE, MPIRUN, SOURCE, TestCase, main, scene_file
+from harness import EXECUTABLE, MPIRUN, PROGRAM, SOURCE, TestCase, main, scene_file
 
 SLAB = str(scene_file("slab"))
 SMALL = ["--set", "Geometry/Arguments=4, 2 : 0, 0 : 2, 1 : true"]
@@ -23,7 +23,7 @@ class Manners(TestCase):
 
     def call(self, *arguments, code=0, cwd=None, launcher=()):
         process = subprocess.run(
-            [*launcher, EXECUTABLE, *map(str, arguments)],
+            [*launcher, PROGRAM, *map(str, arguments)],
             cwd=cwd or self.work,
             env={**os.environ, "OMP_NUM_THREADS": "1"},
             capture_output=True,
@@ -176,7 +176,7 @@ class Description(Manners):
         written = SOURCE / "doc" / "parameters.md"
         made = subprocess.run(
             [SOURCE / "contrib" / "make_parameters"],
-            env={**os.environ, "VISCOPLASTIC_CONTACT": str(EXECUTABLE)},
+            env={**os.environ, "VISCOPLASTIC_CONTACT": PROGRAM},
             stdout=subprocess.PIPE,
             text=True,
             check=True,

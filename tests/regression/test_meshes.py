@@ -11,7 +11,7 @@ import subprocess
 import tempfile
 from pathlib import Path
 
-from harness import EXECUTABLE, SOURCE, TestCase, as_prm, main, run, scene_file
+from harness import PROGRAM, SOURCE, TestCase, as_prm, main, run, scene_file
 
 MESHES = SOURCE / "prm" / "verification" / "meshes"
 FORMATS = "_2.msh", "_4.msh", ".ucd", ".vtk", ".inp"
@@ -131,7 +131,7 @@ class Same(TestCase):
             }
             (place / "overrides.prm").write_text(as_prm(overrides))
             subprocess.run(
-                [EXECUTABLE, "scene/slab.prm", "scene/overrides.prm"],
+                [PROGRAM, "scene/slab.prm", "scene/overrides.prm"],
                 cwd=work,
                 check=True,
                 capture_output=True,
@@ -290,7 +290,7 @@ class Converted(TestCase):
             environment = {**os.environ, "PYTHONPATH": work}
             (Path(work) / "overrides.prm").write_text(as_prm(overrides))
             result = subprocess.run(
-                [EXECUTABLE, "--check", scene_file("slab"), f"{work}/overrides.prm"],
+                [PROGRAM, "--check", scene_file("slab"), f"{work}/overrides.prm"],
                 env=environment,
                 capture_output=True,
                 text=True,

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import numpy as np
 
-from harness import EXECUTABLE, MPIRUN, TestCase, as_prm, main, run, scene_file
+from harness import EXECUTABLE, MPIRUN, PROGRAM, TestCase, as_prm, main, run, scene_file
 
 STATISTICS_2D = [
     "step",
@@ -482,7 +482,7 @@ class Unwritable(TestCase):
 
     def call(self, *arguments, ranks=1, stdout=subprocess.PIPE, limit=None, **overrides):
         (self.work / "small.prm").write_text(as_prm({**self.SMALL, **overrides}))
-        command = [EXECUTABLE, *arguments]
+        command = [PROGRAM if limit is None else EXECUTABLE, *arguments]
         if ranks > 1:
             command = MPIRUN + ["-n", str(ranks)] + command
 

@@ -13,7 +13,7 @@ from unittest import mock
 
 import numpy as np
 
-from harness import EXECUTABLE, MPIRUN, SOURCE, Run, TestCase, main
+from harness import MPIRUN, PROGRAM, SOURCE, Run, TestCase, main
 
 sys.path.insert(0, str(SOURCE / "contrib" / "python"))
 
@@ -75,7 +75,7 @@ class Runs(TestCase):
     def setUpClass(cls):
         cls.work = Path(tempfile.mkdtemp(prefix="python_"))
         cls.addClassCleanup(shutil.rmtree, cls.work, ignore_errors=True)
-        cls.program = Program(EXECUTABLE, launcher=MPIRUN)
+        cls.program = Program(PROGRAM, launcher=MPIRUN)
         cls.results = cls.program.run(
             page_scene(), cls.work / "block", overrides=SHORT
         )
@@ -130,7 +130,7 @@ class Runs(TestCase):
         """A file, another one over it, and two ranks."""
         scene = write_scene(page_scene(), self.work / "file.prm")
         more = write_scene({"Time": {"Phases": "1: 2"}}, self.work / "more.prm")
-        results = Program(EXECUTABLE, ranks=2, launcher=MPIRUN).run(
+        results = Program(PROGRAM, ranks=2, launcher=MPIRUN).run(
             [scene, more],
             self.work / "ranks",
             overrides={"Geometry/Arguments": SHORT["Geometry/Arguments"]},
@@ -208,7 +208,7 @@ class Notebook(TestCase):
         shown = nbformat.read(SOURCE / "doc" / "sweep.ipynb", 4)
         notebook = nbformat.read(SOURCE / "doc" / "sweep.ipynb", 4)
         environment = {
-            "VISCOPLASTIC_CONTACT": str(EXECUTABLE),
+            "VISCOPLASTIC_CONTACT": PROGRAM,
             "PYTHONPATH": str(SOURCE / "contrib" / "python"),
             "PYTHONDONTWRITEBYTECODE": "1",
         }

@@ -24,7 +24,7 @@ from unittest import mock
 
 import numpy as np
 
-from harness import DEFECTS, EFFORT, TestCase, main
+from harness import DEFECTS, EFFORT, EXECUTABLE, PROGRAM, TestCase, main
 from runs import EVERY_STEP, Job, without_wall_times
 
 N_KILLS = int(os.environ.get("RESTART_KILLS", 6))
@@ -481,36 +481,49 @@ class Signals(RestartCase):
         "Output/Fields every": 10,
     }
 
+    @classmethod
+    def setUpClass(cls):
+        cls.references = {}
+
+    @classmethod
+    def reference(cls, ranks):
+        """The run that no signal interrupts."""
+        if ranks not in cls.references:
+            job = cls.references[ranks] = Job("slab", cls.OVERRIDES)
+            cls.addClassCleanup(job.__exit__)
+            job.run(ranks=ranks)
+        return cls.references[ranks]
+
     def n_rows(self, job):
         file = job.results / "statistics.csv"
         return file.read_text().count("\n") if file.exists() else 0
 
-    def check(self, number, ranks):
-        with Job("slab", self.OVERRIDES) as reference:
-            reference.run(ranks=ranks)
-            self.assertFalse(reference.checkpoints.exists(), "nobody asked")
-            with Job("slab", self.OVERRIDES) as job:
-                process = job.start(ranks=ranks)
-                wait_for(lambda: self.n_rows(job) > 3 or process.poll() is not None)
-                # one rank alone is told
-                pid = process.pid if ranks == 1 else children(process.pid)[-1]
-                os.kill(pid, number)
-                _, message = process.communicate()
-                if number == signal.SIGUSR1:
-                    self.assertEqual(process.returncode, 0, message)
-                    self.assertEqual(len(job.steps()), 1)
-                else:
-                    self.assertEqual(process.returncode, 3, message)
-                    sentence = next(
-                        line for line in message.splitlines() if "--restart" in line
-                    )
-                    self.assertIn(signal.Signals(number).name, sentence)
-                    rows = self.n_rows(job)
-                    self.assertLess(rows, 121)
-                    self.assertEqual(job.steps(), [rows - 2])
-                result = job.run("--restart", ranks=ranks)
-                self.assertIn("Restart after step", result.stdout)
-                self.assertIdentical(job.results, reference.results)
+    def check(self, number, ranks, program=EXECUTABLE):
+        reference = self.reference(ranks)
+        self.assertFalse(reference.checkpoints.exists(), "nobody asked")
+        with Job("slab", self.OVERRIDES) as job:
+            process = job.start(ranks=ranks, program=program)
+            self.addCleanup(process.kill)
+            wait_for(lambda: self.n_rows(job) > 3 or process.poll() is not None)
+            # one rank alone is told
+            pid = process.pid if ranks == 1 else children(process.pid)[-1]
+            os.kill(pid, number)
+            _, message = process.communicate(timeout=60)
+            if number == signal.SIGUSR1:
+                self.assertEqual(process.returncode, 0, message)
+                self.assertEqual(len(job.steps()), 1)
+            else:
+                self.assertEqual(process.returncode, 3, message)
+                sentence = next(
+                    line for line in message.splitlines() if "--restart" in line
+                )
+                self.assertIn(signal.Signals(number).name, sentence)
+                rows = self.n_rows(job)
+                self.assertLess(rows, 121)
+                self.assertEqual(job.steps(), [rows - 2])
+            result = job.run("--restart", ranks=ranks)
+            self.assertIn("Restart after step", result.stdout)
+            self.assertIdentical(job.results, reference.results)
 
     def test_sigusr1(self):
         self.check(signal.SIGUSR1, 1)
@@ -520,6 +533,10 @@ class Signals(RestartCase):
 
     def test_sigint(self):
         self.check(signal.SIGINT, 1)
+
+    def test_what_tests_run_instead_of_the_program(self):
+        """tests/server/client passes signals on."""
+        self.check(signal.SIGINT, 1, PROGRAM)
 
     def test_sigterm_two_ranks(self):
         self.check(signal.SIGTERM, 2)

@@ -14,7 +14,7 @@ import shear_layer
 import synthetic_study as synthetic
 import test_pad
 import test_slab
-from harness import EXECUTABLE, SOURCE, TestCase, main
+from harness import PROGRAM, SOURCE, TestCase, main
 
 sys.path.insert(0, str(SOURCE / "contrib"))
 
@@ -368,7 +368,7 @@ class Page(Folder):
     def check(self, files, overrides):
         """The program accepts the scene."""
         process = subprocess.run(
-            [EXECUTABLE, "--check", *files, *set_options(overrides)],
+            [PROGRAM, "--check", *files, *set_options(overrides)],
             capture_output=True,
             text=True,
             cwd=self.folder,

@@ -7,19 +7,21 @@ the other on several ranks.
 """
 
 import subprocess
-import tempfile
 from pathlib import Path
+
+# Looks like the program, or with --serve like the server.
+CLIENT = str(Path(__file__).with_name("client"))
 
 
 class Server:
-    """A process of server.cc: its executable, the limits of a run (seconds of
-    processor time and of the clock, bytes of memory or 0), its environment and
-    the command that launches its ranks, if there are several.
+    """A process of server.cc: the command that starts it, perhaps on several ranks,
+    the limits of a run (seconds of processor time and of the clock, bytes of memory
+    or 0) and its environment.
     """
 
-    def __init__(self, executable, cpu, clock, memory, environment, launcher=()):
+    def __init__(self, command, cpu, clock, memory, environment):
         self.process = subprocess.Popen(
-            [*launcher, executable, str(cpu), str(clock), str(memory)],
+            [*command, str(cpu), str(clock), str(memory)],
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
             stderr=subprocess.DEVNULL,
@@ -48,31 +50,3 @@ class Server:
         self.process.stdin.close()
         self.process.wait()
         self.process.stdout.close()
-
-
-class SocketServer:
-    """One that the program `client' beside this file asks, for those that start the
-    program themselves: environment is what they need."""
-
-    def __init__(self, executable, program, environment):
-        self.folder = tempfile.TemporaryDirectory()
-        socket = str(Path(self.folder.name) / "socket")
-        self.process = subprocess.Popen(
-            [executable, "0", "0", "0", socket],
-            stdin=subprocess.PIPE,
-            stdout=subprocess.PIPE,
-            env=environment,
-        )
-        if self.process.stdout.readline() != b"ready\n":
-            raise RuntimeError(f"{executable} does not start")
-        self.environment = {
-            "VISCOPLASTIC_CONTACT": str(Path(__file__).with_name("client")),
-            "VISCOPLASTIC_CONTACT_PROGRAM": str(program),
-            "VISCOPLASTIC_CONTACT_SOCKET": socket,
-        }
-
-    def close(self):
-        self.process.stdin.close()
-        self.process.wait()
-        self.process.stdout.close()
-        self.folder.cleanup()

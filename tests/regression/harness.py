@@ -236,7 +236,7 @@ def run_program(arguments, ranks, work, code=None):
         process = subprocess.CompletedProcess(arguments, ended_with, *words)
     else:
         process = subprocess.run(
-            [*launcher(ranks), EXECUTABLE, *map(str, arguments)],
+            [*launcher(ranks), PROGRAM, *map(str, arguments)],
             cwd=work,
             env={**os.environ, "OMP_NUM_THREADS": "1"},
             capture_output=True,

@@ -403,9 +403,9 @@ def one_of_each(plane):
     return used[first]
 
 
-# Dark where there is nothing, white at the bound: under dots in the color of
-# slip and under black arrows.
-UTILISATION = ListedColormap(matplotlib.colormaps["bone"](np.linspace(0.25, 1.0, 256)))
+# Dark where there is nothing, pale at the bound, but not as the page: under dots in the
+# color of slip and under black arrows.
+UTILISATION = ListedColormap(matplotlib.colormaps["bone"](np.linspace(0.2, 0.88, 256)))
 
 
 def draw_utilisation(axes, plane, body, longest, length):

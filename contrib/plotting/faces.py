@@ -33,7 +33,8 @@ def friction_state(contact):
         # What another condition moves along the face only sticks across that. Without
         # slip rates are rounding.
         largest = rate[slipping].max(initial=0.0)
-        moved = sticking & (largest > 0.0) & (rate > 1e-6 * largest)
+        # (hanging nodes have means of their neighbors.)
+        moved = (contact["stick"] > 0.999) & (largest > 0.0) & (rate > 1e-6 * largest)
     has_friction = (contact["bound"] > 0.0) & ~moved
     states = np.where(has_friction, slipping.astype(int), states)
     return states if contact.cells.shape[1] != 2 else with_held_ends(contact, states)

@@ -75,8 +75,10 @@ class Supports:
         opens = "unilateral", "normal compliance"
         if role == "contact" and self.entry(number, "Contact law") in opens:
             return "unilateral"
-        pressed = self.entry(number, "Pressure") or self.entry(number, "Traction")
-        return "traction" if role == "free" and pressed else role
+        return "traction" if role == "free" and self.is_loaded(number) else role
+
+    def is_loaded(self, number):
+        return bool(self.entry(number, "Pressure") or self.entry(number, "Traction"))
 
     def has_springs(self, number):
         return self.role(number) in ("traction", "displacement") and any(
@@ -196,8 +198,7 @@ class Supports:
                 place = f"${'xyz'[d]}$ = {length.value(at)}"
             what = HATCHED.get(role, role)
             if self.has_springs(number):
-                loaded = self.entry(number, "Pressure") or self.entry(number, "Traction")
-                bare = role == "traction" and not loaded
+                bare = role == "traction" and not self.is_loaded(number)
                 what = "springs" if bare else f"{what} and springs"
             text = f"{place}: {what}"
             if text not in found:  # pieces of one face
@@ -326,9 +327,11 @@ def draw(axes, body, supports):
             if supports.has_springs(number):
                 springs.append(spring_symbols(piece, size))
             try:
-                if role == "traction":
+                if role == "traction" or (
+                    role == "displacement" and supports.is_loaded(number)
+                ):
                     pushed.append(load(piece, supports, number, size, time))
-                elif role in ("displacement", "contact", "unilateral"):
+                if role in ("displacement", "contact", "unilateral"):
                     draw_motion(axes, piece, supports, number, size, time)
             except UserError:
                 pass  # an expression of more than place and time

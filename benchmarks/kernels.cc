@@ -7,7 +7,9 @@
 //
 // prints the degrees of freedom and, of each part, its name, seconds (median of
 // nine; of three for what is made once a mesh), the bytes that it moves at
-// least, and the bytes that it keeps; 0 where that means little.
+// least, and the bytes that it keeps; 0 where that means little. On several
+// ranks each number is that of the rank with most, and so are the last lines:
+// degrees of freedom, then those of the contact face.
 
 #include <deal.II/base/mpi.h>
 #include <deal.II/base/timer.h>
@@ -64,8 +66,11 @@ namespace
         const double       moved = 0.,
         const double       kept  = 0.)
   {
-    std::cout << name << ' ' << seconds << ' ' << moved << ' ' << kept
-              << std::endl;
+    std::vector<double> most{seconds, moved, kept};
+    Utilities::MPI::max(most, MPI_COMM_WORLD, most);
+    if (Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) == 0)
+      std::cout << name << ' ' << most[0] << ' ' << most[1] << ' ' << most[2]
+                << std::endl;
   }
 
 
@@ -123,19 +128,20 @@ namespace
       },
       [&] { multigrid.reset(); });
 
-    const double      n = dof_handler.n_dofs();
+    const double      n = dof_handler.n_locally_owned_dofs();
     DistributedVector x = d.space.owned_vector(), y(x);
     for (std::size_t i = 0; i < d.space.excluded().size(); ++i)
       x.begin()[i] = d.space.excluded()[i] ? 0. : 1. + i % 7;
     print("product",
           median_seconds(9, [&] { d.matrix.vmult(y, x); }),
-          12. * d.matrix.n_nonzero_elements() + 16. * n);
+          12. * d.matrix.trilinos_matrix().NumMyNonzeros() + 16. * n);
     if (multigrid->vmult_matrix(y, x))
       print("shared",
             median_seconds(9, [&] { multigrid->vmult_matrix(y, x); }));
     print("cycle",
           median_seconds(9, [&] { multigrid->vmult_untruncated(y, x); }));
     print("dofs", n);
+    print("face", d.face_restriction().face().n_dofs());
   }
 } // namespace
 

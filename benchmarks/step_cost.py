@@ -160,6 +160,14 @@ def over_plain(rows, unit):
     return statistics.mean(sum(row[column] for column in WORK) for row in rows) / unit
 
 
+def read_rows(directory):
+    with open(Path(directory) / "statistics.csv", newline="", encoding="utf-8") as table:
+        return [
+            {column: float(value) for column, value in row.items()}
+            for row in csv.DictReader(table)
+        ]
+
+
 def measure(executable, work, dim, n, solver, n_steps, tolerance, ranks=1):
     name = f"{dim}d_{solver}"
     file = work / f"{name}.prm"
@@ -168,11 +176,7 @@ def measure(executable, work, dim, n, solver, n_steps, tolerance, ranks=1):
         encoding="utf-8",
     )
     output, memory = run([*launcher(ranks), executable, str(file)])
-    with open(work / name / "statistics.csv", newline="", encoding="utf-8") as table:
-        rows = [
-            {column: float(value) for column, value in row.items()}
-            for row in csv.DictReader(table)
-        ]
+    rows = read_rows(work / name)
     # Numbers 3, 5, 7 start from zero, as number 1, which sets up as well.
     plain = rows[3 : N_PLAIN + 1 : 2]
     steps = rows[N_PLAIN + 2 :]
@@ -234,7 +238,26 @@ def main():
         default=str(SOURCE / "build" / "viscoplastic_contact"),
         help="the program (default: in build/)",
     )
+    parser.add_argument(
+        "--scene",
+        nargs=3,
+        metavar=("DIM", "N", "DIRECTORY"),
+        help="print the scene of a case with multigrid, and no more",
+    )
     arguments = parser.parse_args()
+    if arguments.scene:
+        dim, n, directory = arguments.scene
+        print(
+            scene(
+                int(dim),
+                int(n),
+                "multigrid",
+                arguments.steps,
+                arguments.tolerance,
+                directory,
+            )
+        )
+        return
     known = [f"{dim}d-{solver}" for dim in (2, 3) for solver in SOLVERS]
     for case in arguments.cases:
         if case not in known:

@@ -3,6 +3,7 @@
 #include <deal.II/grid/tria_iterator.h>
 
 #include <viscoplastic_contact/discretization/bulk_system.h>
+#include <viscoplastic_contact/mesh/mesh_refinement.h>
 
 namespace Viscoplastic
 {
@@ -110,51 +111,42 @@ namespace Viscoplastic
 
 
 
+    /// A vertex, as the number that it has in a refined cell.
+    using Question = std::pair<CellId::binary_type, unsigned int>;
+
     /// What vertices of refined cells are that lie apart from the owned cells
-    /// of this rank. A rank asks for a vertex by a cell and a number in it; the
-    /// rank that owns the node has all cells around it. Collective.
+    /// of this rank: asks a rank that owns a cell at each. Collective.
     template <int dim>
     std::vector<Combination>
-    ask_others(const std::vector<std::pair<CellId::binary_type, unsigned int>>
-                                          &questions,
-               const VertexNodes<dim>     &nodes,
-               const AdmissibleSpace<dim> &space)
+    ask_others(const std::vector<Question> &questions,
+               const VertexNodes<dim>      &nodes,
+               const AdmissibleSpace<dim>  &space)
     {
-      std::vector<Combination> answers(questions.size());
-      if (Utilities::MPI::n_mpi_processes(space.communicator) == 1)
-        return answers;
-
-      const auto &triangulation = space.dof_handler.get_triangulation();
-      // One for each question, empty where another rank is the owner.
+      const auto &triangulation =
+        dynamic_cast<const parallel::distributed::Triangulation<dim> &>(
+          space.dof_handler.get_triangulation());
+      std::map<unsigned int, std::vector<Question>>     to_ask;
+      std::map<unsigned int, std::vector<unsigned int>> numbers;
+      for (unsigned int q = 0; q < questions.size(); ++q)
+        {
+          const unsigned int rank = rank_at_vertex(triangulation,
+                                                   CellId(questions[q].first),
+                                                   questions[q].second);
+          to_ask[rank].push_back(questions[q]);
+          numbers[rank].push_back(q);
+        }
       std::map<unsigned int, std::vector<Combination>> to_send;
-      const auto                                       all =
-        Utilities::MPI::all_gather(space.communicator, questions);
-      for (unsigned int rank = 0; rank < all.size(); ++rank)
-        for (unsigned int q = 0; q < all[rank].size(); ++q)
-          {
-            to_send[rank].resize(all[rank].size());
-            const CellId id(all[rank][q].first);
-            auto         cell = triangulation.create_cell_iterator(
-              CellId(id.get_coarse_cell_id(), std::vector<std::uint8_t>()));
-            bool is_here = true;
-            for (const auto child : id.get_child_indices())
-              {
-                is_here = cell->has_children();
-                if (!is_here)
-                  break;
-                cell = cell->child(child);
-              }
-            if (!is_here)
-              continue;
-            const unsigned int vertex = cell->vertex_index(all[rank][q].second);
-            if (nodes.owns(vertex))
-              to_send[rank][q] = nodes.resolve(vertex);
-          }
-      for (const auto &received :
+      for (const auto &[rank, asked] :
+           Utilities::MPI::some_to_some(space.communicator, to_ask))
+        for (const auto &[id, vertex] : asked)
+          to_send[rank].push_back(
+            nodes.resolve(triangulation.create_cell_iterator(CellId(id))
+                            ->vertex_index(vertex)));
+      std::vector<Combination> answers(questions.size());
+      for (const auto &[rank, received] :
            Utilities::MPI::some_to_some(space.communicator, to_send))
-        for (unsigned int q = 0; q < answers.size(); ++q)
-          if (!received.second[q].empty())
-            answers[q] = received.second[q];
+        for (unsigned int i = 0; i < received.size(); ++i)
+          answers[numbers.at(rank)[i]] = received[i];
       return answers;
     }
 
@@ -228,7 +220,7 @@ namespace Viscoplastic
     const auto origins = find_origins(nodes, triangulation, hierarchy);
 
     // Parents that other ranks know.
-    std::vector<std::pair<CellId::binary_type, unsigned int>> questions;
+    std::vector<Question>                questions;
     std::map<unsigned int, unsigned int> question_of_vertex;
     for (const Origin<dim> &origin : origins)
       if (origin.level >= 0)

@@ -9,6 +9,7 @@
 #include <viscoplastic_contact/mesh/mesh_check.h>
 #include <viscoplastic_contact/mesh/mesh_ids.h>
 #include <viscoplastic_contact/mesh/mesh_refinement.h>
+#include <viscoplastic_contact/mesh/mesh_size.h>
 
 #include <array>
 #include <map>
@@ -27,6 +28,11 @@ namespace Viscoplastic
                                            dim,
                                            geometry.plane_model,
                                            triangulation.get_communicator());
+      check_mesh_size(dim,
+                      file.cells.size(),
+                      file.cells.size(),
+                      "The mesh file '" + geometry.file + "'",
+                      triangulation.get_communicator());
       // From nodes around a face to deal.II's lexicographic order.
       constexpr std::array<unsigned int, 8> order{{0, 1, 3, 2, 4, 5, 7, 6}};
 

@@ -110,6 +110,7 @@ namespace Viscoplastic
       AssertThrow(!is_negative && total <= most, ExcMessage(message.str()));
       check_mesh_size(dim,
                       total,
+                      total,
                       "'Geometry/Arguments' = " + excerpt(geometry.arguments),
                       communicator);
     }

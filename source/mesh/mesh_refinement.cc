@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <deal.II/base/mpi.h>
+#include <deal.II/distributed/p4est_wrappers.h>
 #include <deal.II/grid/grid_tools.h>
 
 #include <viscoplastic_contact/base/messages.h>
@@ -107,6 +108,7 @@ namespace Viscoplastic
     if (global > 0)
       check_mesh_size(dim,
                       std::ldexp(triangulation.n_cells(0), dim * global),
+                      triangulation.n_cells(0),
                       "'Geometry/Global refinements' = " +
                         std::to_string(global),
                       comm);
@@ -115,6 +117,7 @@ namespace Viscoplastic
     if (local > 0)
       check_mesh_size(dim,
                       n_cells_after(times, triangulation),
+                      triangulation.n_cells(0),
                       "'Geometry/Boundary refinements' = " +
                         excerpt(geometry.boundary_refinements),
                       comm);
@@ -218,6 +221,39 @@ namespace Viscoplastic
 
 
   template <int dim>
+  unsigned int
+  rank_at_vertex(const parallel::distributed::Triangulation<dim> &triangulation,
+                 const CellId                                    &cell,
+                 const unsigned int                               vertex)
+  {
+    namespace P4est = internal::p4est;
+    typename P4est::types<dim>::quadrant place;
+    P4est::init_coarse_quadrant<dim>(place);
+    const auto go_to_child = [&place](const unsigned int child) {
+      typename P4est::types<dim>::quadrant children[1U << dim];
+      P4est::init_quadrant_children<dim>(place, children);
+      place = children[child];
+    };
+    const auto children = cell.get_child_indices();
+    for (const auto child : children)
+      go_to_child(child);
+    // As far as cells of the mesh may be refined.
+    for (unsigned int level = children.size() + 1;
+         level < triangulation.n_global_levels();
+         ++level)
+      go_to_child(vertex);
+    using Forest = typename P4est::types<dim>::forest;
+    return P4est::functions<dim>::comm_find_owner(
+      const_cast<Forest *>(triangulation.get_p4est()),
+      triangulation
+        .get_coarse_cell_to_p4est_tree_permutation()[cell.get_coarse_cell_id()],
+      &place,
+      triangulation.locally_owned_subdomain());
+  }
+
+
+
+  template <int dim>
   void
   refine_like(const parallel::distributed::Triangulation<dim> &model,
               parallel::distributed::Triangulation<dim>       &triangulation)
@@ -237,16 +273,25 @@ namespace Viscoplastic
             }
         }
     const MPI_Comm comm = triangulation.get_communicator();
-    for (const std::vector<CellId> &of_rank : Utilities::MPI::all_gather(
-           comm, std::vector<CellId>(refined.begin(), refined.end())))
-      refined.insert(of_rank.begin(), of_rank.end());
     for (bool changes = true; changes;)
       {
-        changes = false;
+        // A rank with a part of a cell of the model knows whether it is
+        // refined.
+        std::map<unsigned int, std::vector<CellId>> to_ask, to_refine;
         for (const auto &cell : triangulation.active_cell_iterators())
-          if (cell->is_locally_owned() && refined.count(cell->id()) > 0)
+          if (cell->is_locally_owned())
+            to_ask[rank_at_vertex(model, cell->id(), 0)].push_back(cell->id());
+        for (const auto &[rank, asked] :
+             Utilities::MPI::some_to_some(comm, to_ask))
+          for (const CellId &id : asked)
+            if (refined.count(id) > 0)
+              to_refine[rank].push_back(id);
+        changes = false;
+        for (const auto &received :
+             Utilities::MPI::some_to_some(comm, to_refine))
+          for (const CellId &id : received.second)
             {
-              cell->set_refine_flag();
+              triangulation.create_cell_iterator(id)->set_refine_flag();
               changes = true;
             }
         changes = Utilities::MPI::logical_or(changes, comm);
@@ -285,6 +330,7 @@ namespace Viscoplastic
 
 
   VISCOPLASTIC_INSTANTIATE(refine_mesh);
+  VISCOPLASTIC_INSTANTIATE(rank_at_vertex);
   VISCOPLASTIC_INSTANTIATE(refine_like);
   VISCOPLASTIC_INSTANTIATE(prepare_mesh_change);
 } // namespace Viscoplastic

@@ -15,6 +15,14 @@ namespace Viscoplastic
   refine_mesh(const GeometryParameters                  &geometry,
               parallel::distributed::Triangulation<dim> &triangulation);
 
+  /// The rank that owns the active cell at a vertex of a cell, which may be
+  /// refined and need not be known here.
+  template <int dim>
+  unsigned int
+  rank_at_vertex(const parallel::distributed::Triangulation<dim> &triangulation,
+                 const CellId                                    &cell,
+                 const unsigned int                               vertex);
+
   /// Refine a mesh as another one of the same coarse cells is. Collective.
   template <int dim>
   void

@@ -56,6 +56,11 @@ namespace Viscoplastic
     }
 
   private:
+    /// What other numbers of ranks would gain or lose, and what all of them
+    /// keep. Collective.
+    void
+    advise_on_ranks(const Discretization<dim> &discretization);
+
     /// Where data contradict each other at the end of a phase. Collective.
     void
     warn_of_jumps(const AdmissibleSpace<dim> &space);

@@ -264,9 +264,10 @@ def load_kinks(size, report):
 
 
 class Memory:
-    """Samples the resident memory of the program that runs, in MB."""
+    """Samples the resident memory of the program that runs a scene, in MB."""
 
-    def __init__(self, seconds=0.005):
+    def __init__(self, scene, seconds=0.005):
+        self.scene = scene
         self.samples, self.seconds = [], seconds  # (bytes of statistics.csv, MB)
         self.stop = threading.Event()
         self.thread = threading.Thread(target=self.watch)
@@ -281,7 +282,7 @@ class Memory:
 
     def watch(self):
         while not self.stop.wait(self.seconds):
-            for process in descendants():
+            for process in runs_of(self.scene):
                 statistics = process / "cwd" / "results" / "statistics.csv"
                 try:
                     status = (process / "status").read_text()
@@ -299,20 +300,14 @@ class Memory:
         return [mb for size, mb in self.samples if 0.1 * last <= size < last]
 
 
-def descendants():
-    """The directories in /proc of the children of this process, and of theirs:
-    the server forks for each run."""
-    parent = {}
-    for stat in Path("/proc").glob("[0-9]*/stat"):
+def runs_of(scene):
+    """The directories in /proc of processes that run a scene, whoever has forked them."""
+    for process in Path("/proc").glob("[0-9]*"):
         try:
-            parent[int(stat.parent.name)] = int(
-                stat.read_text().rpartition(")")[2].split()[1]
-            )
+            if Path(os.readlink(process / "cwd")).name.startswith(scene + "_"):
+                yield process
         except OSError:
             continue
-    for process, above in parent.items():
-        if os.getpid() in (above, parent.get(above)):
-            yield Path("/proc", str(process))
 
 
 @case(
@@ -323,7 +318,7 @@ def descendants():
 def many_steps(size, report):
     defects = []
     for n_periods, steps in (250, 20), (size(250, 2500), 40):
-        with Memory() as memory:
+        with Memory("many_steps_2d") as memory:
             result = scene(
                 "many_steps_2d", **{"Time/Phases": f"{n_periods}: {n_periods * steps}"}
             )

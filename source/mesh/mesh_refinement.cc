@@ -243,10 +243,10 @@ namespace Viscoplastic
          ++level)
       go_to_child(vertex);
     using Forest = typename P4est::types<dim>::forest;
+    // The coarse cell of a CellId is the tree.
     return P4est::functions<dim>::comm_find_owner(
       const_cast<Forest *>(triangulation.get_p4est()),
-      triangulation
-        .get_coarse_cell_to_p4est_tree_permutation()[cell.get_coarse_cell_id()],
+      cell.get_coarse_cell_id(),
       &place,
       triangulation.locally_owned_subdomain());
   }

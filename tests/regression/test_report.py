@@ -449,7 +449,7 @@ class Parts(TestCase):
         with mock.patch.object(quantities, "names_of_places", names):
             text = tables.errors(results, {"estimated_error_of_quantity": about}, Units())
         self.assertIn("Of displacement of crown, <i>y</i>, largest", text)
-        table = tables.columns(statistics, ["slip_area"], Units(), {})
+        table = tables.columns(statistics, ["slip_area"], Units())
         self.assertIn("(initial equilibrium)", table)
 
     def test_bill_of_a_resumed_run(self):

@@ -6,8 +6,12 @@
 #include <deal.II/grid/grid_generator.h>
 
 #include "body.h"
+#include "refusals.h"
 #include <viscoplastic_contact/mesh/mesh_marking.h>
 #include <viscoplastic_contact/mesh/mesh_refinement.h>
+#include <viscoplastic_contact/mesh/mesh_size.h>
+
+#include <sys/resource.h>
 
 #include <algorithm>
 #include <cmath>
@@ -63,6 +67,55 @@ namespace
     estimate                 = 0.;
     parameters.maximal_level = 6;
     EXPECT_FALSE(mark_cells(body.triangulation, estimate, parameters));
+  }
+
+
+
+  TYPED_TEST(Marking, RankAtVertex)
+  {
+    constexpr int dim = TypeParam::value;
+    Body<dim>     body(box_with<dim>("set Role = clamped\n"));
+    body.triangulation.refine_global(2);
+    body.refine_where([](const Point<dim> &x) { return x[0] < 0.4; });
+    for (const auto &cell : body.triangulation.cell_iterators())
+      for (const unsigned int v : cell->vertex_indices())
+        {
+          auto there = cell;
+          while (there->has_children())
+            there = there->child(v);
+          if (!there->is_artificial())
+            {
+              EXPECT_EQ(rank_at_vertex(body.triangulation, cell->id(), v),
+                        there->subdomain_id())
+                << cell->id() << " " << v << " " << there->id();
+            }
+        }
+  }
+
+
+
+  TYPED_TEST(Marking, EachRankNeedsAllCoarseCells)
+  {
+    rlimit before{};
+    ASSERT_EQ(getrlimit(RLIMIT_AS, &before), 0);
+    rlimit limit   = before;
+    limit.rlim_cur = rlim_t(8) << 30;
+    ASSERT_EQ(setrlimit(RLIMIT_AS, &limit), 0);
+    const auto message_with = [](const double n_coarse_cells) {
+      return message_of([&] {
+        check_mesh_size(
+          TypeParam::value, 5e6, n_coarse_cells, "It", MPI_COMM_WORLD);
+      });
+    };
+    const std::string many = message_with(5e6), few = message_with(1.);
+    ASSERT_EQ(setrlimit(RLIMIT_AS, &before), 0);
+    EXPECT_EQ(few, "");
+    const bool is_parallel =
+      Utilities::MPI::n_mpi_processes(MPI_COMM_WORLD) > 1;
+    EXPECT_EQ(many.find("coarse cells, which each rank keeps") !=
+                std::string::npos,
+              is_parallel)
+      << many;
   }
 
 

@@ -33,8 +33,8 @@ namespace Viscoplastic
     };
 
     /// The temperature and thermal strain at the samples at time t, kept until
-    /// another time is asked for. Throws ExcMessage where the temperature has no
-    /// value, or is not absolute but has to be. Collective.
+    /// another time is asked for. Throws ExcMessage where the temperature has
+    /// no value, or is not absolute but has to be. Collective.
     std::shared_ptr<const Samples>
     at(const double t) const;
 

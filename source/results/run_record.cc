@@ -160,7 +160,9 @@ namespace Viscoplastic
                                   {"dealii_version", DEAL_II_PACKAGE_VERSION},
                                   {"n_mpi_ranks", n_ranks},
                                   {"dimension", dim},
-                                  {"effects", scene.effects()}};
+                                  {"effects", scene.effects()},
+                                  {"changed_defaults",
+                                   scene.changed_defaults()}};
     const Units           &units = scene.parameters.units;
     if (units.are_declared())
       record["units"] = {{"length", units.length.name},

@@ -54,6 +54,8 @@ namespace Viscoplastic
         << " MPI rank(s)\nEffects:\n";
     for (const std::string &effect : scene.effects())
       out << "  " << effect << '\n';
+    if (const auto changed = scene.changed_defaults(); !changed.empty())
+      out << "Changed defaults: " << enumeration(changed) << '\n';
     for (const std::string &warning : scene.warnings)
       console.remark("Warning: " + warning);
     out << std::flush;

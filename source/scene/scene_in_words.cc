@@ -171,5 +171,33 @@ namespace Viscoplastic
 
 
 
+  template <int dim>
+  std::vector<std::string>
+  Scene<dim>::changed_defaults() const
+  {
+    std::vector<std::string> result;
+    const auto               add = [&](const std::string &entry,
+                         const std::string &present,
+                         const std::string &earlier) {
+      if (parameters.origin_of(entry).empty())
+        result.push_back("'" + entry + "' = " + present + " (was " + earlier +
+                         ")");
+    };
+    if (has_viscosity())
+      add("Material/Stress history",
+          name_of(parameters.stress.stress_history),
+          "cell means");
+    if (on_any_boundary([](const auto &condition) {
+          return condition.has_computed_pressure();
+        }))
+      add("Solver/Coulomb pressure",
+          name_of(parameters.solver.coulomb_pressure),
+          "lagged");
+    return result;
+  }
+
+
+
   VISCOPLASTIC_INSTANTIATE_MEMBER(Scene, effects);
+  VISCOPLASTIC_INSTANTIATE_MEMBER(Scene, changed_defaults);
 } // namespace Viscoplastic

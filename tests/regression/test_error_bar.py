@@ -119,6 +119,11 @@ class LongCreep(TestCase):
 
     def test_quadrature_points_by_default(self):
         result, effectivity = self.compared(2)
+        self.assertIn(
+            "Changed defaults: 'Material/Stress history' = quadrature points (was cell "
+            "means)\n",
+            result.stdout,
+        )
         self.assertNotIn("estimate_history", result.statistics)
         self.assertClose(self.velocity(result), self.VELOCITY, relative=0.04)
         # the part of the mesh alone, since the steps are those of the fine run
@@ -137,6 +142,8 @@ class LongCreep(TestCase):
         record = result.info["estimated_error"]
         self.assertGreater(record["history"], record["space"])
         self.assertIn("mesh, in the history", result.stdout)
+        # a scene that says what it wants is told nothing
+        self.assertNotIn("Changed defaults", result.stdout)
 
     def test_quantity_to_a_tolerance(self):
         """A point remembers what rates have been wrong by."""

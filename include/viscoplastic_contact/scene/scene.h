@@ -45,6 +45,11 @@ namespace Viscoplastic
     std::vector<std::string>
     effects() const;
 
+    /// Entries that matter here, are left to the program, and had another
+    /// default in earlier versions, for the user.
+    std::vector<std::string>
+    changed_defaults() const;
+
     /// Known after inspect(), like the effects.
     const Material<dim> &
     material(const types::material_id id) const

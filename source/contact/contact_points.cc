@@ -470,9 +470,14 @@ namespace Viscoplastic
           point.n_tangents == 2 && state.slips(point, p))
         {
           // kappa P_e with kappa = rho/|s|, which tends to infinity as a
-          // point comes to rest.
+          // point comes to rest. What came from another mesh has not slipped
+          // on this one, and has its direction from its force.
           const double       size = state.slip[p].norm();
-          const Tensor<1, 2> e    = state.slip[p] / size;
+          const Tensor<1, 2> along =
+            size > 0. ? state.slip[p] : state.multiplier[p];
+          if (!(along.norm() > 0.))
+            continue;
+          const Tensor<1, 2> e = along / along.norm();
           result += spring_along(-e[1] * point.map[0] + e[0] * point.map[1],
                                  state.bound[p] / size,
                                  node,

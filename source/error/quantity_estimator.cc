@@ -228,17 +228,6 @@ namespace Viscoplastic
 
 
   template <int dim>
-  const IrreversibleStress &
-  QuantityEstimator<dim>::time_error_of(const State<dim> &state) const
-  {
-    return discretization.scene().quantity->is_force() ?
-             state.remembered_error :
-             state.time_error;
-  }
-
-
-
-  template <int dim>
   void
   QuantityEstimator<dim>::settle(const EvaluatedState<dim> &accepted,
                                  const ContactState        &contact,
@@ -331,7 +320,7 @@ namespace Viscoplastic
           continue;
         DistributedVector load = discretization.space.owned_vector();
         add_irreversible_load(discretization.stress_space,
-                              time_error_of(accepted.state),
+                              accepted.state.time_error,
                               load);
         estimate.settled_time += sign * (load * dual.w);
       }
@@ -490,7 +479,10 @@ namespace Viscoplastic
         if (d.scene().has_viscosity()) // collective
           {
             DistributedVector load = d.space.owned_vector();
-            add_irreversible_load(d.stress_space, time_error_of(state), load);
+            add_irreversible_load(d.stress_space,
+                                  quantity.is_force() ? state.remembered_error :
+                                                        state.time_error,
+                                  load);
             time = dual_problem.sign() * (load * dual.w);
           }
         if (end.space_estimate.squared_indicators.size() > 0)

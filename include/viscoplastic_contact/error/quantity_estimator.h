@@ -151,11 +151,6 @@ namespace Viscoplastic
                       const CoulombLaw *law,
                       Vector<double>   &sides) const;
 
-    /// The error of z by time steps that the quantity feels: of a force, the
-    /// part that has not relaxed.
-    const IrreversibleStress &
-    time_error_of(const State<dim> &state) const;
-
     /// Settle what later steps will not change in the error of a sum.
     void
     settle(const EvaluatedState<dim> &accepted,

@@ -207,6 +207,15 @@ class Variants(TestCase):
         self.assertEqual(
             found[2:], ["Boundary 2/Gap=", "Boundary 2/Foundation displacement=0"]
         )
+        # Bounds 10^6 times the step's own pressure may have no solution.
+        never = next(v for v in self.of(half + free) if v.instead == "never")
+        self.assertEqual(
+            never.overrides,
+            [
+                "Boundary 2/Friction coefficient=1e6*(0.3)",
+                "Solver/Coulomb pressure=lagged",
+            ],
+        )
         # The force is not known, or belongs to two pieces.
         self.assertEqual(given(half + free, ""), [])
         self.assertEqual(given(half + contact, "3*t"), [])

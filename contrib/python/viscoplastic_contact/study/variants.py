@@ -320,8 +320,12 @@ class Variants:
         if friction in ("tresca", "coulomb"):
             name = "Friction coefficient" if is_coulomb else "Friction bound"
             self.add(f"friction{on}", "none", f"{section}/{name}=0")
-            # Where there is none, there is none.
-            self.add(f"slip{on}", "never", f"{section}/{name}=1e6*({data(name)})")
+            # Where there is none, there is none. With such a coefficient the step's
+            # own pressure may have no solution; bounds of the last one hold, too.
+            never = [f"{section}/{name}=1e6*({data(name)})"]
+            if is_coulomb and is_unilateral:
+                never.append("Solver/Coulomb pressure=lagged")
+            self.add(f"slip{on}", "never", *never)
             others.append(name)
             if data("Slip rate factor").strip() != "1":
                 self.add(

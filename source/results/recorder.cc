@@ -145,6 +145,9 @@ namespace Viscoplastic
     if (run.von_mises.update(stress.max_von_mises, t))
       run.von_mises_position = stress.von_mises_position;
     run.pressure.update(quantities.contact.max_pressure, t);
+    run.first_touch.update(quantities.contact.contact_area > 0.,
+                           step.time_step);
+    run.first_slip.update(friction.slip_area > 0., step.time_step);
     run.capped_volume.update(step.capped_volume, step.time_of_rate());
     run.largest_error.update(errors.error);
     run.largest_exact.update(errors.exact);

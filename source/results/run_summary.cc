@@ -129,6 +129,24 @@ namespace Viscoplastic
 
 
 
+    /// When what was not so at the beginning began.
+    template <int dim>
+    void
+    print_first(std::ostream          &out,
+                const Units           &units,
+                const RunSummary<dim> &run)
+    {
+      const auto print = [&](const std::string &what, const FirstStep &first) {
+        if (first.n > 1)
+          out << "First " << what << " between t = " << number(first.before)
+              << " and " << WithUnits<dim>{units}.time(first.t) << '\n';
+      };
+      print("touch", run.first_touch);
+      print("slip", run.first_slip);
+    }
+
+
+
     /// What step control and the stability limit did to the steps.
     template <int dim>
     void
@@ -261,6 +279,7 @@ namespace Viscoplastic
   {
     print_end(out, units, names, *this);
     print_largest(out, units, *this);
+    print_first(out, units, *this);
     print_steps(out, *this);
     print_errors(out, units, names, *this);
   }

@@ -427,6 +427,17 @@ namespace Viscoplastic
             scene.names.of("boundary", id) + " is never pressed on the " +
             (condition.against ? "other body" : "foundation") +
             ", and nothing else loads the scene.");
+        if (condition.friction_coefficient)
+          if (const double largest =
+                DataSampler<dim>(
+                  places_on_boundary(
+                    discretization.space.dof_handler.get_triangulation(), id),
+                  scene)
+                  .largest(*condition.friction_coefficient);
+              largest > 5.)
+            result.push_back("'Boundary " + std::to_string(id) +
+                             "/Friction coefficient' is up to " +
+                             number(largest) + "; is it one of percent?");
         if (!condition.is_unilateral() ||
             !(condition.against || condition.given_gap))
           continue;
@@ -445,7 +456,9 @@ namespace Viscoplastic
             number(overlap) + units.suffix(Quantity::length, dim) + ", " +
             number(std::round(100. * overlap / size)) + " % of the size of " +
             (condition.against ? "both" : "the body") +
-            "; small strains are assumed.");
+            (condition.against ?
+               "; small strains are assumed, of two bodies, not of one." :
+               "; small strains are assumed."));
       }
     if (discretization.space.is_held_by_contact() && discretization.face)
       for (const double t :

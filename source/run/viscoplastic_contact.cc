@@ -167,6 +167,7 @@ namespace Viscoplastic
           {
             TimerOutput::Scope phase(timer, "pilot run");
             expectation = pilot_run();
+            triangulation.refine_global(expectation.refinements);
             budget->expect_size(expectation.size);
             control.expect_dual_norms(expectation.dual_times,
                                       expectation.dual_norms);
@@ -179,6 +180,13 @@ namespace Viscoplastic
       check_exact_solution(discretization->space);
     set_initial_state();
     check_steps(*discretization, control, console, accepted);
+    if (expectation.refinements > 0)
+      console.remark("Note: '" + scene.names.quantity(scene.quantity->name) +
+                     "' is zero on the scene's first mesh, which errs much; "
+                     "this run begins with 'Geometry/Global refinements' = " +
+                     std::to_string(parameters.geometry.global_refinements +
+                                    expectation.refinements) +
+                     '.');
     // A scene that is wrong has been refused by now.
     if (!expectation.failure.empty())
       console.remark("Note: the run on the first mesh that tells how large the "

@@ -414,6 +414,8 @@ class Notes(TestCase):
             self.assertNotIn("free gives the same", result.stdout)
         open_gap = self.pressed("unilateral", Gap=0.1)
         self.assertIn("free gives the same", open_gap.stdout)
+        closed = self.pressed("unilateral", Gap=0.012)  # at t = 0.6
+        self.assertIn("First touch between t = 0.5 and 0.75\n", closed.stdout)
 
     def test_a_stiffness_that_no_number_resolves(self):
         gap = "0.01*(x - 1)^2"

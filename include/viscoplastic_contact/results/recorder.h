@@ -277,6 +277,7 @@ namespace Viscoplastic
     for (Largest *largest : {&run.displacement,
                              &run.strain,
                              &run.von_mises,
+                             &run.pressure,
                              &run.slip_area,
                              &run.slip_rate,
                              &run.capped_volume,
@@ -285,6 +286,8 @@ namespace Viscoplastic
                              &run.utilization,
                              &run.stiffness})
       archive & largest->value & largest->t;
+    run.first_touch.exchange(archive);
+    run.first_slip.exchange(archive);
     archive &run.friction_area &run.missed_bounds &run.computed_bounds;
     for (unsigned int d = 0; d < dim; ++d)
       archive &run.critical_position[d] & run.displacement_position[d] &

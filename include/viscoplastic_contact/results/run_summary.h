@@ -82,6 +82,31 @@ namespace Viscoplastic
 
 
 
+  /// The step in which something has been so for the first time.
+  struct FirstStep
+  {
+    unsigned int n      = 0;
+    double       before = 0., t = 0.;
+    bool         is_over = false;
+
+    void
+    update(const bool is_so, const TimeStep &step)
+    {
+      if (is_over || !is_so)
+        return;
+      *this = {step.n, step.t_old, step.t, true};
+    }
+
+    template <typename Archive>
+    void
+    exchange(Archive &archive)
+    {
+      archive &n &before &t &is_over;
+    }
+  };
+
+
+
   /// The quantities of interest for the closing words of a run, as
   /// doc/results.md defines them. Absent: what the scene does not have.
   template <int dim>
@@ -127,6 +152,8 @@ namespace Viscoplastic
 
     Largest displacement, strain, von_mises, pressure, slip_area, slip_rate,
       capped_volume, utilization;
+    /// In which the body has touched and slipped.
+    FirstStep first_touch, first_slip;
     /// The part of the faces in bilateral contact on which the foundation
     /// pulls.
     Largest tension_share;

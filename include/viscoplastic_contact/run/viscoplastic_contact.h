@@ -32,6 +32,9 @@ namespace Viscoplastic
     std::string failure;
     /// The norms of the dual solution of a quantity, and their times.
     std::vector<double> dual_times, dual_norms;
+    /// How often the first mesh has to be refined before the quantity of
+    /// interest is not zero.
+    unsigned int refinements = 0;
   };
 
   /// Finds that out. Collective.

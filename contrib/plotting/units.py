@@ -3,7 +3,8 @@
 
 A scene may declare the units of length, time and stress; those of all other
 quantities follow.  Numbers stay those of the scene: an axis or a text shows
-them in a handy multiple of their unit, seconds as days where there are many,
+them in the scene's unit, as the program does, or where they are large or small in a
+handy multiple of it, seconds as days where there are many,
 or without units in a power of ten, which stands in the label.
 """
 
@@ -65,6 +66,7 @@ def powers(kind, dimension):
         "rate norm": (0.5, 0.5 * dimension, -0.5),
         "velocity": (0, 1, -1),
         "rate": (0, 0, -1),
+        "temperature": (0, 0, 0),  # always in kelvins
     }[kind]
 
 
@@ -145,17 +147,38 @@ class Units:
     def unit(self, kind, values):
         """The unit for numbers up to the size of the values; of no kind, or where
         the scene does not say, a power of ten."""
+        if kind == "temperature":
+            return Unit(1.0, "K")
         largest = float(np.abs(values).max(initial=0.0)) if np.size(values) else 0.0
         power = power_of_ten(largest)
         needed = [name for name, _ in self.parts(kind)] if kind else []
         if not kind or any(name not in self.declared for name in needed):
             return Unit(10.0**power, ten(power))
-        if kind in self.declared and (largest == 0.0 or 1.0 <= largest < 1e4):
-            return Unit(1.0, self.declared[kind])
+        own = self.own(kind)
+        if own and (1.0 <= largest < 1e4 or (largest == 0.0 and kind in self.declared)):
+            return Unit(1.0, own)
         named = isinstance(kind, str) and kind.removeprefix(ROOT) in KINDS
         if named and all(name in self.known for name in needed):
             return self.multiple(kind, largest)
         return Unit(10.0**power, ten(power, self.composed(kind)))
+
+    def own(self, kind):
+        """What the program calls the unit of the scene's numbers, where that is short."""
+        if kind in self.declared:
+            return self.declared[kind]
+        length, time = self.declared.get("length"), self.declared.get("time")
+        if kind == "velocity":
+            return f"{length}/{time}"
+        base = {"force": "N", "section force": "N", "energy": "J"}.get(kind)
+        if not base or not {"length", "stress"} <= self.known.keys():
+            return None
+        power = 3 if kind == "energy" else 2
+        size = self.known["stress"] * self.known["length"] ** power
+        per = f"/{length}" if self.dimension == 2 and kind != "section force" else ""
+        return next(
+            (f"{p}{base}{per}" for p, of in PREFIXES.items() if abs(size / of - 1.0) < 1e-9),
+            None,
+        )
 
     def multiple(self, kind, largest):
         """The largest unit of the international system in which `largest` is
@@ -212,7 +235,10 @@ class Units:
         ]
 
     def pace(self):
-        """The time that velocities go by: years of runs over months, and so on."""
+        """The time that velocities go by: that of the scene, or instead of seconds
+        years of runs over months, and so on."""
+        if self.known["time"] > 1.0:
+            return next(name for name, of in TIMES.items() if of == self.known["time"])
         seconds = self.duration * self.known["time"]
         for name, least in (("years", 100 * DAY), ("days", 3 * DAY), ("h", 3 * 3600.0)):
             if seconds >= least:

@@ -651,7 +651,7 @@ class SaltJoint(TestCase):
     MEAN, WEIGHT, WIDTH = 8, 0.022 * 4, 2
     COARSE = {
         "Geometry/Arguments": "16, 16 : -1, 0 : 1, 4 : true",
-        "Output/Fields every": 1,
+        "Output/Fields interval": 0,
     }
 
     def face(self, result, index):

@@ -52,6 +52,7 @@ from plotting.results import (
     Record,
     Results,
     UserError,
+    by_numbers,
     read_parameters,
     read_statistics,
 )
@@ -748,9 +749,10 @@ class Numbers(TestCase):
                 "contact_force_4_x/reaction_3_x",
             ),
             ("displacement_y of crown+point1_y", "point10_y+point1_y"),
+            ("stress_xx of crown", "point10_stress_xx"),
             ("reaction_y of roofing", "reaction_y of roofing"),
         ):
-            self.assertEqual(derived.by_numbers(text, names), expected)
+            self.assertEqual(by_numbers(text, names), expected)
 
     def test_another_run_is_drawn_in_the_units_of_this_one(self):
         t, force = np.array([0.0, 1.0, 2.0]), np.array([0.0, 1.0, 3.0])

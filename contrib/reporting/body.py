@@ -159,7 +159,14 @@ class Body:
         self.units = Units.of(results)
         self.packed = Packed()
         names = names_of_interest(results)
-        surface_of, surface_of_face = Latest(Surface), Latest(Surface.of_face)
+        # Bodies that touch at first are told apart by where they go.
+        end = results.body()
+
+        def surface(record):
+            same = np.array_equal(record.points, end.points)
+            return Surface(record, moved=end["displacement"] if same else None)
+
+        surface_of, surface_of_face = Latest(surface), Latest(Surface.of_face)
         last, first = surface_of(results.body()), surface_of(results.body(0))
         n_outputs = len(results.solution)
         outputs, self.names = plan(first, last, n_outputs, names, self.dim, most)

@@ -368,9 +368,10 @@ namespace Viscoplastic
         scene.unit(Quantity::energy) + ", by the balance of energy rather " +
         number(std::max(friction + missing, 0.), 3) +
         scene.unit(Quantity::energy) +
-        ": the sum takes the friction at the ends of steps, which changes "
-        "within them; shorter steps mend this, which 'Error control/Quantity' "
-        "= friction_dissipation chooses.");
+        ": what is true lies between, as a rule. The sum takes the friction "
+        "at the ends of steps, which changes within them; shorter steps mend "
+        "this, which 'Error control/Quantity' = friction_dissipation "
+        "chooses.");
 
     if (run.has_zero_quantity())
       result.push_back("Warning: '" +

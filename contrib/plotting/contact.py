@@ -149,6 +149,8 @@ def draw(results, index, options, scale):
         figure, left_out = draw_lines(contact, scale)
     else:
         figure, left_out = draw_planes(contact, results.body(index), scale)
+        if planes(contact, results.body(index))[0].is_flat():
+            heading += "\n"
     if left_out:
         heading += f" (the {MOST_PIECES} largest of {MOST_PIECES + left_out} pieces)"
     figure.suptitle(heading, fontsize="large")

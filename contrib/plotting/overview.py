@@ -4,7 +4,7 @@
 import matplotlib.pyplot as plt
 import numpy as np
 
-from . import style
+from . import quantities, style
 from .body import Body2D, make_body
 from .body_base import Scale
 from .contact import Arrows, draw_utilisation, named_plane
@@ -105,7 +105,10 @@ def begin(width, heading, curve, columns=(1.0,)):
 
 
 def has_force_curve(statistics):
-    return len(statistics.get("t", ())) > 1 and bool(forces_of("friction", statistics))
+    forces = forces_of("friction", statistics), forces_of("contact", statistics)
+    return len(statistics.get("t", ())) > 1 and any(
+        force.any() for kind in forces for force in kind.values()
+    )
 
 
 def forces_of(kind, statistics):
@@ -122,7 +125,11 @@ def draw_force_curve(axes, statistics, body):
     kind, forces = "friction", forces_of("friction", statistics)
     pressed = forces_of("contact", statistics)
     largest = max(np.abs(force).max(initial=0.0) for force in forces.values())
-    if pressed and (largest == 0.0 or is_rounding("friction_force", largest, statistics)):
+    if pressed and (
+        largest == 0.0
+        or is_rounding("friction_force", largest, statistics)
+        or (quantities.of_interest or "").startswith("contact_force")
+    ):
         kind, forces = "contact", pressed
         largest = max(np.abs(force).max(initial=0.0) for force in forces.values())
     # Around an axis radial forces balance each other; their sum is that of sizes.

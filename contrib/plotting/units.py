@@ -16,6 +16,7 @@ import numpy as np
 from matplotlib.ticker import MaxNLocator, ScalarFormatter
 
 PREFIXES = {"n": 1e-9, "µ": 1e-6, "m": 1e-3, "": 1.0, "k": 1e3, "M": 1e6, "G": 1e9}
+PREFIXES.update({"T": 1e12, "P": 1e15})
 DAY = 86400.0
 TIMES = {"s": 1.0, "min": 60.0, "h": 3600.0, "days": DAY, "years": 365.25 * DAY}
 ALIASES = {
@@ -226,10 +227,13 @@ class Units:
         if kind in ("area", "volume"):
             power = powers(kind, self.dimension)[1]
             mark = {1: "", 2: "²", 3: "³"}[power]
-            return [Unit(1e-3**power, f"mm{mark}"), Unit(1.0, f"m{mark}")]
-        name = ORDERS.get(kind) or DERIVED[kind][self.dimension]
+            lengths = {"mm": 1e-3, "m": 1.0, "km": 1e3}
+            return [Unit(size**power, name + mark) for name, size in lengths.items()]
+        name, per = ORDERS.get(kind) or DERIVED[kind][self.dimension], 1.0
+        if kind in ("force", "energy") and name.endswith("/m"):
+            name, per = f"{name[:1]}/{self.declared['length']}", self.known["length"]
         return [
-            Unit(size, prefix + name)
+            Unit(size / per, prefix + name)
             for prefix, size in PREFIXES.items()
             if kind != "length" or size <= 1e3
         ]

@@ -19,7 +19,7 @@ matplotlib.use("Agg")
 
 import matplotlib.pyplot as plt
 from plotting import history, hysteresis, overview, quantities, style
-from plotting.body_base import Scale, folded
+from plotting.body_base import Scale, factor_of_contact, folded
 from plotting.geometry import corner_volumes
 from plotting.results import NoPicture, Results, UserError, read_statistics
 from plotting.supports import Supports, draw_body_force
@@ -60,6 +60,8 @@ class Handy(TestCase):
             (SI, 3, "force", 3.4e4, "kN", 1e3),
             (SI, 2, "energy", 5.4, "J/m", 1),
             (SI, 3, "area", 6e-4, "mm²", 1e-6),
+            (SI, 3, "area", 3e7, "km²", 1e6),
+            (SI, 3, "force", 9.3e13, "TN", 1e12),
             (SI, 2, "force density", 2.5e4, "kN/m³", 1e3),
             (SI, 3, "velocity", 2e-5, "µm/s", 1e-6),
             (SI, 2, "energy norm", 0.5, "(J/m)$^{1/2}$", 1),
@@ -70,6 +72,7 @@ class Handy(TestCase):
             # as the program prints them
             ({"length": "mm", "time": "s", "stress": "MPa"}, 2, "force", 20.0, "N/mm", 1),
             ({"length": "mm", "time": "h", "stress": "MPa"}, 2, "energy", 20.0, "mJ/mm", 1),
+            ({"length": "mm", "time": "h", "stress": "MPa"}, 2, "energy", 2e4, "J/mm", 1e3),
             ({"length": "mm", "time": "h", "stress": "MPa"}, 3, "velocity", 2.0, "mm/h", 1),
             ({"length": "m", "time": "day", "stress": "MPa"}, 2, "velocity", 3e-6, "µm/day", 1e-6),
             ({"length": "mm", "time": "day", "stress": "MPa"}, 3, "time", 40.0, "day", 1),
@@ -171,6 +174,17 @@ class Handy(TestCase):
 
 
 class Folding(TestCase):
+    def test_bodies_are_not_drawn_over_each_other(self):
+        """A gap of 5 that closes to 2 at one node of two: 5/3 times at most."""
+        points = np.array([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0]])
+        before, now = Square(points, {}), Square(points[::-1], {})
+        before["gap"], now["gap"] = np.array([5.0, 0.0]), np.array([0.0, 2.0])
+        self.assertClose(factor_of_contact((before, now)), 5 / 3, relative=1e-12)
+        now["gap"] = np.array([0.0, 0.0])
+        self.assertClose(factor_of_contact((before, now)), 1, relative=1e-12)
+        now["gap"] = np.array([0.0, 5.0])
+        self.assertGreater(factor_of_contact((before, now)), 1e300 / 1e10)
+
     def test_volumes_of_corners(self):
         """Of a brick all are its volume, with the sign of its orientation."""
         square = np.array([(0, 0), (1, 0), (1, 1), (0, 1)], float)
@@ -205,6 +219,7 @@ class Folding(TestCase):
             boundary=lambda: None,
             dimension=lambda: 2,
             is_of_revolution=lambda: False,
+            opposite=False,
         )
         options = SimpleNamespace(magnification=None, mirror=None, window=None, label=[])
         self.assertEqual(Scale(results, [0], "von_mises", options).magnification, 20)

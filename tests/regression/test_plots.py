@@ -113,6 +113,7 @@ def block(*extent, cells=(4, 2, 3), displacement=0.0):
         dimension=lambda: dim,
         is_of_revolution=lambda: False,
         rest=0.0,
+        opposite=False,
     )
 
 
@@ -154,6 +155,7 @@ def sliding_block():
         dimension=lambda: 3,
         is_of_revolution=lambda: False,
         rest=0.0,
+        opposite=False,
     )
 
 
@@ -911,11 +913,15 @@ class Pictures(TestCase):
         record.data["gap"] = np.ones(len(record.points))
         results.read, results.contact = lambda path: record, results.contact[:4]
         results.dimension = lambda: 2
-        figure = stick_slip.draw(results, None)
+        anytime = SimpleNamespace(begin=None, until=None)
+        figure = stick_slip.draw(results, anytime)
         self.addCleanup(plt.close, figure)
         self.assertIn("3 outputs of 32 steps", figure._suptitle.get_text())
         (rates,) = figure.axes[1].collections
         self.assertTrue(np.ma.getmaskarray(rates.get_array()).all())
+        times = [time for time, _ in results.contact]
+        later = SimpleNamespace(begin=times[1], until=times[3])
+        self.assertEqual(stick_slip.outputs(results, later), results.contact[1:])
         from plotting.faces import friction_state
 
         results = Results(result.directory)

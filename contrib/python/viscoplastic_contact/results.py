@@ -219,6 +219,8 @@ class Results:
         self.solution = series(solution) if solution.exists() else []
         contact = self.directory / "contact.pvd"
         self.contact = series(contact) if contact.exists() else []
+        # Whether bodies touch each other.
+        self.opposite = (self.directory / "opposite.pvd").exists()
         self.records = {}
 
     def __getitem__(self, name):

@@ -565,6 +565,16 @@ class Parts(TestCase):
                 surface = Surface(record, moved=given)
                 self.assertEqual(len(surface.vertices), n_vertices)
                 self.assertEqual(len(surface.edges), n_edges)
+        # Of two cubes the faces between them are seen where they part.
+        below = np.concatenate([square, square + [0, 0, 1]])
+        for way, n_faces in (0.0, 10), (0.3, 12):
+            record = SimpleNamespace(
+                points=np.concatenate([below, below + [0, 0, 1]]),
+                cells=np.arange(16).reshape(2, 8),
+                size=2.0,
+                data={"displacement": np.repeat([[0, 0, 0], [way, 0, 0]], 8, axis=0)},
+            )
+            self.assertEqual(len(Surface(record).faces), n_faces)
 
     def test_vtk_js_is_that_of_the_lock_file(self):
         folder = SOURCE / "contrib" / "reporting" / "vtk"

@@ -33,10 +33,11 @@ namespace Viscoplastic
       double largest = 0., scale = 1.;
       for (const double value : values)
         largest = std::max(largest, std::abs(value));
-      static const std::regex  prefixed("([numkMG]?)(m|N|J|Pa)(/.*)?");
-      static const std::string prefixes[]{"n", "u", "m", "", "k", "M", "G"};
-      constexpr int            n_prefixes = std::size(prefixes);
-      std::smatch              match;
+      static const std::regex  prefixed("([numkMGTP]?)(m|N|J|Pa)(/.*)?");
+      static const std::string prefixes[]{
+        "n", "u", "m", "", "k", "M", "G", "T", "P"};
+      constexpr int n_prefixes = std::size(prefixes);
+      std::smatch   match;
       if (largest > 0. && (largest < 1. || largest >= 1e4) &&
           std::regex_match(unit, match, prefixed))
         {

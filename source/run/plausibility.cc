@@ -252,24 +252,6 @@ namespace Viscoplastic
         return result;
       }
 
-      /// Of a stress at t = 0: a hydrostatic one makes nothing flow.
-      double
-      largest_von_mises(const VectorExpression<dim> &stress) const
-      {
-        constexpr auto components = stress_components<dim>();
-        std::vector<SymmetricTensor<2, 3>> at(places.size());
-        for (unsigned int c = 0; c < components.size(); ++c)
-          {
-            const auto values = values_at(stress[c], places, 0.);
-            for (std::size_t p = 0; p < at.size(); ++p)
-              at[p][components[c].first][components[c].second] = values[p];
-          }
-        double result = 0.;
-        for (const SymmetricTensor<2, 3> &here : at)
-          result = std::max(result, std::sqrt(1.5) * deviator(here).norm());
-        return result;
-      }
-
     private:
       const std::vector<Point<dim>> places;
       std::vector<double>           times;
@@ -302,8 +284,8 @@ namespace Viscoplastic
         largest = {value, origin, is_load, t};
     };
     if (scene.initial_stress)
-      add(body.largest_von_mises(*scene.initial_stress),
-          "the von Mises stress of the initial stress",
+      add(body.largest(*scene.initial_stress, stress_components<dim>().size()),
+          "the initial stress",
           true);
     double hottest = 0.;
     if (scene.temperature)

@@ -61,7 +61,7 @@ def measure(executable, work, case, budget, n_steps):
             {column: float(value) for column, value in row.items()}
             for row in csv.DictReader(table)
         ]
-    meshes = []  # microseconds by the degree of freedom
+    meshes = []  # microseconds per degree of freedom
     for before, row in zip(rows[1:], rows[2:]):
         # Meshes on the way to the budget are left out.
         if row["cells"] == before["cells"] or row["cells"] < 0.8 * budget:

@@ -5,6 +5,7 @@ import re
 
 import numpy as np
 from matplotlib.lines import Line2D
+from scipy.spatial import cKDTree
 
 from . import quantities, style
 from .geometry import boundary_faces, corner_volumes
@@ -97,7 +98,12 @@ class Scale:
         self.labels = options.label
         self.window = options.window
         bodies = [results.body(index) for index in indices]
-        self.magnification = options.magnification or self.chosen_magnification(bodies)
+        faces = []
+        if results.opposite:
+            faces = [(results.face(0), results.face(index)) for index in indices]
+        self.magnification = options.magnification or self.chosen_magnification(
+            bodies, faces
+        )
         self.low, self.high = np.full(3, np.inf), np.full(3, -np.inf)
         values = []
         for body in bodies:
@@ -133,16 +139,32 @@ class Scale:
     def size(self):
         return (self.high - self.low).max()
 
-    def chosen_magnification(self, bodies):
-        """With which the deformation shows and folds no cell over."""
+    def chosen_magnification(self, bodies, faces):
+        """With which the deformation shows, folds no cell over and draws no body over
+        another one."""
         largest = max(
             np.linalg.norm(body["displacement"], axis=1).max(initial=0.0)
             for body in bodies
         )
         factor = style.rounded_magnification(largest, max(body.size for body in bodies))
-        while factor > 1.0 and any(folded(body, factor).any() for body in bodies):
+        most = min(map(factor_of_contact, faces), default=np.inf)
+        while factor > 1.0 and (
+            factor > most or any(folded(body, factor).any() for body in bodies)
+        ):
             factor = max(style.next_smaller(factor), 1.0)
         return factor
+
+
+def factor_of_contact(faces):
+    """How much larger displacements may be drawn until two bodies with a gap between
+    them at first, the face then and now, meet: 1 where they do."""
+    before, now = faces
+    if before is None or now is None or "gap" not in now:
+        return np.inf
+    _, nearest = cKDTree(before.points).query(now.points)
+    gap = before["gap"][nearest]
+    closed = np.where(gap > 1e-9 * now.size, 1.0 - now["gap"] / np.where(gap, gap, 1.0), 0.0)
+    return 1.0 / max(closed.max(initial=0.0), 1e-300)
 
 
 def folded(body, magnification):

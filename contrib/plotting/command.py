@@ -193,7 +193,7 @@ def parse(arguments):
         dest="begin",
         type=finite,
         metavar="T",
-        help="history and hysteresis from T on",
+        help="history, hysteresis and stick-slip from T on",
     )
     span.add_argument("--until", type=finite, metavar="T", help="and until T")
     span.add_argument(

@@ -23,7 +23,7 @@ from .faces import friction_state, is_unilateral, lines, planes, required, state
 from .geometry import thinned
 from .layout import add_color_bar
 from .results import UserError
-from .supports import MOTION
+from .supports import MOTION, Supports
 from .units import Unit, Units, show
 
 MOST_PIECES = 4
@@ -75,6 +75,7 @@ class Scale:
         self.time = self.units.unit("time", [time for time, _ in results.solution])
         bodies = [results.body(index).points for index in indices]
         self.length = self.units.unit("length", np.concatenate(bodies))
+        self.supports = Supports(results, self.units) if results.boundary() else None
         self.arrows = Arrows()
         self.values = {name: [np.zeros(1)] for name in self.KINDS}
         self.displacement = 0.0
@@ -148,6 +149,8 @@ def draw(results, index, options, scale):
         figure, left_out = draw_lines(contact, scale)
     else:
         figure, left_out = draw_planes(contact, results.body(index), scale)
+        if planes(contact, results.body(index))[0].is_flat():
+            heading += "\n"
     if left_out:
         heading += f" (the {MOST_PIECES} largest of {MOST_PIECES + left_out} pieces)"
     figure.suptitle(heading, fontsize="large")
@@ -187,6 +190,10 @@ def draw_lines(contact, scale):
             if has_states:
                 mark_states(axes, contact, line)
         show(column[-1].xaxis, line.label(scale.length), scale.length)
+        ends = contact.points[line.nodes]
+        name = scale.supports and scale.supports.name(0.5 * (ends[1:] + ends[:-1]))
+        if name:
+            column[0].set_title(name, loc="left")
     first = panels[:, 0]
     words = {
         "contact_pressure": "contact pressure\n$p$",
@@ -336,8 +343,16 @@ def draw_planes(contact, body, scale):
                 label = style.range_label(shade, words[name], values, unit, separator)
                 add_color_bar(axes, shade.mappable(), label, unit, flat, extend=extend)
             if i == 0:
-                row[0].set_title(f"{plane.name(scale.length)}, {plane.view()}", pad=10)
+                name = named_plane(plane, scale.supports, scale.length)
+                row[0].set_title(f"{name}, {plane.view()}", pad=10)
     return figure, len(found) - len(shown)
+
+
+def named_plane(plane, supports, length):
+    """Where a plane is, and what the scene calls its boundary."""
+    centers = plane.contact.points[plane.cells].mean(axis=1)
+    name = supports and supports.name(centers)
+    return f"{name}, {plane.name(length)}" if name else plane.name(length)
 
 
 def draw_states(axes, plane, contact):

@@ -27,26 +27,6 @@ def split(text, separator):
     return [part.strip() for part in found if part.strip()]
 
 
-def by_numbers(text, names):
-    """Columns as a scene names their places, "reaction_y of roof", as statistics.csv
-    does: reaction_3_y."""
-    # Longer names first: they may contain others.
-    for place, name in sorted(names.items(), key=lambda item: -len(item[1])):
-        kind, number = place.rsplit(" ", 1)
-        stem = {
-            "boundary": r"(reaction|friction_force|contact_force)",
-            "point": r"displacement",
-        }.get(kind)
-        if stem:
-            column = "point" if kind == "point" else r"\1_"
-            text = re.sub(
-                rf"\b{stem}_([xyz]) of {re.escape(name)}(?!\w)",
-                rf"{column}{number}_\{1 if kind == 'point' else 2}",
-                text,
-            )
-    return text
-
-
 def add(results, text, dimension):
     """Make an expression a column of the results, unless it is one. Values that are
     not finite, as of a division by zero, are gaps."""

@@ -32,19 +32,27 @@ def weld(points, tolerance):
     return connected_components(graph, directed=False)[1]
 
 
-def boundary_faces(record, size):
+def boundary_faces(record, size, moved=None):
     """The faces (edges in 2D) of cells on the boundary of the body.
 
-    Returns the point numbers of each and the cell it belongs to.  A face on
-    the boundary belongs to one cell.  So does a face between cells of
+    Returns the point numbers of each, the cell it belongs to, and a number for each
+    point, equal for those at the same place that move alike: bodies may touch.  A
+    face on the boundary belongs to one cell.  So does a face between cells of
     different size, but there the vertex hanging on the large face and its
     corners span the small ones.
+
+    moved  displacements that tell bodies apart; those of the record by default
     """
     if record.cells.shape[1] == 4:
         local_faces, diagonals = QUADRILATERAL_EDGES, ((0, 1),)
     else:
         local_faces, diagonals = HEXAHEDRON_FACES, ((0, 2), (1, 3))
-    vertex = weld(record.points, 1e-6 * size)
+    if moved is None:
+        moved = getattr(record, "data", {}).get("displacement", np.zeros(0))
+    places, largest = record.points, np.abs(moved).max(initial=0.0)
+    if largest > 0.0:  # to 1e-5 of the largest
+        places = np.column_stack([places, moved * (0.1 * size / largest)])
+    vertex = weld(places, 1e-6 * size)
 
     faces = np.concatenate([record.cells[:, face] for face in local_faces])
     owners = np.tile(np.arange(len(record.cells)), len(local_faces))

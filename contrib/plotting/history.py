@@ -9,7 +9,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 
 from . import derived, quantities, style
-from .results import NoPicture, Results, UserError
+from .results import NoPicture, Results, UserError, by_numbers
 from .units import Unit, Units, powers, show, si
 
 
@@ -66,15 +66,23 @@ class Panel:
         return [name for name in found if sizes[name] > threshold]
 
 
+# Of the largest force in a run; forces below it are of the solver's tolerance.
+NOISE = 1e-5
+
+
 def is_rounding(name, size, statistics):
-    """Whether a gap is nothing beside the displacements, or the work of an axial force
-    beside the energy that is stored."""
+    """Whether a gap is nothing beside the displacements, a friction force beside all
+    forces, or the work of an axial force beside the energy that is stored."""
 
     def largest(name):
         return np.abs(finite(statistics.get(name, np.zeros(1)))).max(initial=0.0)
 
     if name == "axial_force":
         return 0.0 < size * largest("axial_strain") < 1e-9 * largest("stored_energy")
+    if name.startswith("friction_force"):
+        forces = r"(contact_force|load|reaction)_\w+"
+        others = [largest(other) for other in statistics if re.fullmatch(forces, other)]
+        return size < NOISE * max(others, default=0.0)
     return name == "max_gap" and size < 1e-9 * largest("max_displacement")
 
 
@@ -258,7 +266,7 @@ def factor_of(kind, factors, dimension):
 def draw(results, options):
     others = [Results(directory) for directory in options.overlay]
     # Columns that are joined by + share a panel.
-    named = (derived.by_numbers(group, results.names) for group in options.columns or [])
+    named = (by_numbers(group, results.names) for group in options.columns or [])
     groups = [derived.split(group, "+") for group in named]
     for run in (results, *others):
         dimension = Units.of(run).dimension

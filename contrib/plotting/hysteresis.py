@@ -10,7 +10,7 @@ from matplotlib.colors import Normalize
 
 from . import style
 from .expression import evaluate
-from .history import window
+from .history import NOISE, window
 from .layout import number_bar
 from .quantities import column, place
 from .results import NoPicture, UserError
@@ -84,7 +84,7 @@ def displacements(results, statistics):
 
 
 def forces(statistics):
-    pattern = r"(friction|contact)_force_(\d+_)?[xyz]|reaction_\d+_[xyz]|axial_force"
+    pattern = r"((friction|contact)_force(_\d+)?|reaction_\d+|load)_[xyz]|axial_force"
     return columns(pattern, statistics)
 
 
@@ -99,27 +99,110 @@ def direction(name):
     return "axial" if name.startswith("axial") else name[-1]
 
 
-def partners(name, found):
-    """Those that make work per unit depth with a force or displacement: the axial
-    force, that of the whole section, with the axial strain alone."""
-    is_axial = direction(name) == "axial"
-    return {n: f for n, f in found.items() if (direction(n) == "axial") == is_axial}
-
-
-def choose(name, found, what, preference):
-    """The one that was asked for, otherwise the one that moves most."""
-    if name is not None:
-        if name not in found:
-            raise UserError(
-                f'there is no {what} "{name}"; there are ' + ", ".join(found)
-            )
-        return name
-    moving = [name for name in found if np.ptp(found[name][0]) > 0.0]
-    if not moving:
+def acts_on(force, results):
+    """The boundary that a force acts on, as its number, or the `section'; None where
+    several share it, or where the other side is a body, which moves, too."""
+    if direction(force) == "axial":
+        return "section"
+    entries, axis = results.data, "xyz".index(direction(force))
+    alone = re.search(r"_(\d+)_[xyz]$", force)
+    if force.startswith("load"):
+        if not is_zero(entries.get(("Loads", "Body force"), ""), axis):
+            return None
+        found = {
+            section
+            for (section, *_), text in entries.items()
+            if section.startswith("Boundary") and is_loaded(results, section, axis)
+        }
+    elif alone:
+        found = {f"Boundary {alone.group(1)}"}
+    else:
+        found = {key[0] for key, text in entries.items() if text == "contact"}
+    if len(found) != 1:
         return None
-    largest = max(np.ptp(found[name][0]) for name in moving)
-    moving = [name for name in moving if np.ptp(found[name][0]) > 1e-6 * largest]
-    return max(moving, key=lambda name: (preference(name), np.ptp(found[name][0])))
+    (section,) = found
+    if not force.startswith(("load", "reaction")) and entries.get((section, "Against")):
+        return None
+    return int(section.split()[-1])
+
+
+def is_zero(text, axis):
+    """Whether a vector of expressions has no such component."""
+    component = [part.strip() for part in text.split(";")][axis : axis + 1]
+    return component in ([], [""], ["0"], ["free"])
+
+
+def is_loaded(results, section, axis):
+    """Whether a boundary has a load along an axis: pressures act along the normal."""
+    if not is_zero(results.data.get((section, "Traction"), ""), axis):
+        return True
+    if results.data.get((section, "Pressure"), "") in ("", "0"):
+        return False
+    faces = results.boundary()
+    of_it = faces["boundary_id"][faces.cells[:, 0]] == int(section.split()[-1])
+    extents = np.ptp(faces.points[faces.cells[of_it]], axis=(0, 1))
+    flat = np.nonzero(extents[: results.dimension()] < 1e-6 * faces.size)[0]
+    return len(flat) == 0 or axis in flat
+
+
+def is_moved(displacement, boundary, results):
+    """Whether it is that of a boundary: its own, or that of a point on it."""
+    if boundary == "section" or displacement.startswith("axial"):
+        return boundary == "section" and displacement.startswith("axial")
+    kind, number = re.fullmatch(r"([a-z]+)(\d+)_[xyz]", displacement).groups()
+    if kind != "point":
+        return int(number) == boundary
+    places = results.data.get(("Output", "Points"), "").split(";")
+    places = [place.rpartition("=")[2] for place in places if place.strip()]
+    try:
+        place = np.array([float(x) for x in places[int(number)].split(",")])
+    except (IndexError, ValueError):
+        return False
+    faces = results.boundary()
+    if faces is None:
+        return False
+    corners = faces.points[faces.cells][:, :, : len(place)]
+    near = 1e-6 * faces.size
+    holds = (corners.min(axis=1) <= place + near) & (corners.max(axis=1) >= place - near)
+    numbers = faces["boundary_id"][faces.cells[:, 0]]
+    return bool((numbers[holds.all(axis=1)] == boundary).any())
+
+
+def pair(results, options, found_forces, found_displacements):
+    """A force and the displacement of what it acts on, by name: those asked for, of
+    the others the pair that makes most work."""
+    for name, found, what in (
+        (options.force, found_forces, "force"),
+        (options.displacement, found_displacements, "displacement"),
+    ):
+        if name is not None and name not in found:
+            raise UserError(f'there is no {what} "{name}"; there are ' + ", ".join(found))
+    if options.force and options.displacement:
+        return options.force, options.displacement
+
+    def moving(found, wanted):
+        spans = {name: np.ptp(values) for name, (values, _) in found.items()}
+        least = NOISE * max(spans.values(), default=0.0)
+        return {n: s for n, s in spans.items() if s > least and wanted in (None, n)}
+
+    pairs = {
+        (force, displacement): (
+            # What the scene prescribes rather than what a point does.
+            not displacement.startswith("point"),
+            force.startswith("friction"),
+            span * way,
+        )
+        for force, span in moving(found_forces, options.force).items()
+        for displacement, way in moving(found_displacements, options.displacement).items()
+        if direction(force) == direction(displacement)
+        and is_moved(displacement, acts_on(force, results), results)
+    }
+    if not pairs:
+        raise NoPicture(
+            "no force changes where the displacement of what it acts on is known: no "
+            "loop to draw; --force and --displacement together draw any two"
+        )
+    return max(pairs, key=pairs.get)
 
 
 def draw(results, options):
@@ -143,37 +226,7 @@ def draw(results, options):
             "('Output/Points') nor displacements that the scene prescribes as "
             "expressions of t"
         )
-    if options.displacement:
-        possible_forces = partners(options.displacement, possible_forces)
-    moving = {
-        direction(name) for name, (u, _) in possible_displacements.items() if np.ptp(u) > 0.0
-    }
-    force = choose(
-        options.force,
-        possible_forces,
-        "force",
-        lambda name: (
-            direction(name) in moving,
-            name.startswith("friction"),
-            drives(name, possible_displacements),
-            direction(name) == "axial",
-        ),
-    )
-    if force is None:
-        raise NoPicture("no force changes in that time: no loop to draw")
-    possible_displacements = partners(force, possible_displacements)
-    displacement = choose(
-        options.displacement,
-        possible_displacements,
-        "displacement",
-        lambda name: (
-            direction(name) == direction(force),
-            drives(force, [name]),
-            name.startswith(("boundary", "foundation")),
-        ),
-    )
-    if displacement is None:
-        raise NoPicture("no displacement changes in that time: no loop to draw")
+    force, displacement = pair(results, options, possible_forces, possible_displacements)
     for name, found in (
         (force, possible_forces),
         (displacement, possible_displacements),
@@ -182,6 +235,12 @@ def draw(results, options):
             raise NoPicture(
                 f"{name} is not finite at all of that time: no loop to draw"
             )
+    whose = ""
+    if direction(force) == direction(displacement) and is_moved(
+        displacement, acts_on(force, results), results
+    ):
+        # Friction and contact forces are those that the body exerts.
+        whose = "by" if force.startswith(("friction", "contact")) else "on"
     return draw_loop(
         results,
         statistics["t"],
@@ -190,8 +249,7 @@ def draw(results, options):
         plane=not any(name.endswith("_z") for name in possible_forces)
         and not results.is_of_revolution(),
         is_axial=direction(force) == "axial",
-        # What moves the body works on it; a foundation is moved by it.
-        whose="by" if displacement.startswith("foundation") else "on",
+        whose=whose,
     )
 
 
@@ -201,16 +259,11 @@ def dissipates(statistics):
     return any(name.endswith("_dissipation") for name in statistics)
 
 
-def drives(force, names):
-    """Whether a reaction belongs to one of the prescribed displacements."""
-    match = re.fullmatch(r"reaction_(\d+)_([xyz])", force)
-    return bool(match) and f"boundary{match.group(1)}_{match.group(2)}" in names
-
-
 def draw_loop(results, t, displacement, force, plane, is_axial, whose):
     """plane: in plane strain forces are those on a unit of thickness; is_axial: the
     force of the whole section over the strain, the displacement of such a unit;
-    whose: `by' the body, negative where it dissipates, or `on' it."""
+    whose: work `by' the body, negative where it dissipates, or `on' it; empty where
+    the force does not act on what moves."""
     (u, u_label), (f, f_label) = displacement, force
     units = Units.of(results)
     time = units.unit("time", results.statistics["t"])
@@ -220,18 +273,16 @@ def draw_loop(results, t, displacement, force, plane, is_axial, whose):
     of = r"N\,d\varepsilon_{zz}" if is_axial else r"F\,dU"
     if begin is not None:
         axes.fill(u[begin:], f[begin:], color=style.SERIES[5], alpha=0.2, lw=0)
-        area = (
-            rf"loop area $\oint {of}$ = {energy.value(work(u[begin:], f[begin:]))}: "
-            f"work {whose} the body per cycle{' and unit depth' if plane else ''}"
-        )
+        area = rf"loop area $\oint {of}$ = {energy.value(work(u[begin:], f[begin:]))}"
+        if whose:
+            area += f": work {whose} the body per cycle{' and unit depth' if plane else ''}"
         if begin > 0:
             area += f" (from $t$ = {time.value(t[begin])})"
     else:
-        area = (
-            rf"open path, $\int {of}$ = {energy.value(work(u, f))}: "
-            f"work {whose} the body{' per unit depth' if plane else ''}"
-            f" ($t$ = {time.value(t[0])} to {time.value(t[-1])})"
-        )
+        area = rf"open path, $\int {of}$ = {energy.value(work(u, f))}"
+        if whose:
+            area += f": work {whose} the body{' per unit depth' if plane else ''}"
+        area += f" ($t$ = {time.value(t[0])} to {time.value(t[-1])})"
     points = np.column_stack([u, f])
     path = LineCollection(
         np.stack([points[:-1], points[1:]], axis=1),

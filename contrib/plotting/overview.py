@@ -4,11 +4,12 @@
 import matplotlib.pyplot as plt
 import numpy as np
 
-from . import style
+from . import quantities, style
 from .body import Body2D, make_body
 from .body_base import Scale
-from .contact import Arrows, draw_utilisation
+from .contact import Arrows, draw_utilisation, named_plane
 from .faces import planes
+from .history import is_rounding
 from .layout import cell, fit_rows
 from .units import Unit, show
 
@@ -71,7 +72,8 @@ def draw_3d(body, heading, curve, view):
         for plane, place, length in zip(shown, column, arrows.lengths):
             faces.append(figure.add_subplot(place))
             draw_utilisation(faces[-1], plane, body, arrows.longest, length)
-        title = f"Contact face {shown[0].name(body.scale.length)}"
+        scale = body.scale
+        title = f"Contact face {named_plane(shown[0], scale.supports, scale.length)}"
         if len(found) > len(shown):
             title = f"Contact faces (the {len(shown)} largest of {len(found)})"
         elif len(shown) > 1:
@@ -103,7 +105,10 @@ def begin(width, heading, curve, columns=(1.0,)):
 
 
 def has_force_curve(statistics):
-    return len(statistics.get("t", ())) > 1 and bool(forces_of("friction", statistics))
+    forces = forces_of("friction", statistics), forces_of("contact", statistics)
+    return len(statistics.get("t", ())) > 1 and any(
+        force.any() for kind in forces for force in kind.values()
+    )
 
 
 def forces_of(kind, statistics):
@@ -119,9 +124,14 @@ def draw_force_curve(axes, statistics, body):
     times, units = statistics["t"], body.scale.units
     kind, forces = "friction", forces_of("friction", statistics)
     pressed = forces_of("contact", statistics)
-    if pressed and not any(force.any() for force in forces.values()):
-        kind, forces = "contact", pressed
     largest = max(np.abs(force).max(initial=0.0) for force in forces.values())
+    if pressed and (
+        largest == 0.0
+        or is_rounding("friction_force", largest, statistics)
+        or (quantities.of_interest or "").startswith("contact_force")
+    ):
+        kind, forces = "contact", pressed
+        largest = max(np.abs(force).max(initial=0.0) for force in forces.values())
     # Around an axis radial forces balance each other; their sum is that of sizes.
     words = {axis: f"force, ${axis}$" for axis in "xyz"}
     if body.scale.of_revolution:

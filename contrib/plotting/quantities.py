@@ -6,6 +6,7 @@ import re
 from . import units
 
 SCALARS = {
+    "temperature": ("temperature $T$", "temperature"),
     "von_mises": (r"von Mises stress $\sigma_\mathrm{vM}$", "stress"),
     "creep_strain": (r"equivalent creep strain $\varepsilon_\mathrm{c}$", None),
     "creep_rate": (r"equivalent creep rate $\dot\varepsilon_\mathrm{c}$", "rate"),

@@ -10,6 +10,7 @@ from viscoplastic_contact.results import NotAvailable as NoPicture
 from viscoplastic_contact.results import (
     Record,
     Results,
+    by_numbers,
     is_empty,
     number,
     pieces,

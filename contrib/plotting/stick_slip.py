@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Stick, slip and slip rate of a 2D face over arc length and time."""
 
+import math
+
 import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.colors import ListedColormap
@@ -32,13 +34,11 @@ def resample(s, values, centers):
     return values[index]
 
 
-def read(results):
-    """(time, contact record) of every output but the initial state.
-
-    That one belongs to no step; an equilibrated one is a single instant.
-    """
-    for time, path in results.contact[1:]:
-        yield time, results.read(path)
+def outputs(results, options):
+    """(time, file) of the outputs in the time that was asked for."""
+    begin = -math.inf if options.begin is None else options.begin
+    until = math.inf if options.until is None else options.until
+    return [(time, path) for time, path in results.contact if begin <= time <= until]
 
 
 def draw(results, options):
@@ -46,9 +46,10 @@ def draw(results, options):
         raise NoPicture(
             f"{results.directory} has no contact.pvd: a scene without contact"
         )
-    if len(results.contact) < FEWEST_TIMES:
+    shown = outputs(results, options)
+    if len(shown) < FEWEST_TIMES:
         raise NoPicture(
-            f"contact.pvd lists only {len(results.contact)} times; a map over time "
+            f"contact.pvd lists only {len(shown)} times there; a map over time "
             "needs more: run the scene with 'Output/Fields every = 1'"
         )
     first = results.read(results.contact[0][1])
@@ -59,9 +60,11 @@ def draw(results, options):
         )
     if "stick" not in first:
         raise NoPicture("the scene has no friction, so nothing sticks or slips")
-    edges = np.array([time for time, _ in results.contact])
+    edges = np.array([time for time, _ in shown])
     pieces = []  # for each piece of the face: s, states and rates at each time
-    for _, contact in read(results):
+    # The first output belongs to no step in that time.
+    for _, path in shown[1:]:
+        contact = results.read(path)
         states, rates = friction_state(contact), contact["slip_rate"]
         for i, line in enumerate(lines(contact)):
             if i == len(pieces):
@@ -71,11 +74,14 @@ def draw(results, options):
             rate = np.where(here == style.NO_CONTACT, np.nan, line.component(rates))
             pieces[i][1].append((line.s, here, rate))
     pieces = [piece for piece in pieces if len(piece[1]) == len(edges) - 1]
-    shown = pieces[:MOST_PIECES]
-    return draw_maps(results, edges, shown, len(pieces) - len(shown))
+    drawn = pieces[:MOST_PIECES]
+    until = math.inf if options.until is None else options.until
+    t = np.asarray(results.statistics.get("t", ()))
+    steps = np.count_nonzero((t > edges[0]) & (t <= until))
+    return draw_maps(results, edges, drawn, len(pieces) - len(drawn), steps)
 
 
-def draw_maps(results, times, pieces, left_out):
+def draw_maps(results, times, pieces, left_out, steps):
     figure, panels = plt.subplots(
         2,
         len(pieces),
@@ -138,7 +144,6 @@ def draw_maps(results, times, pieces, left_out):
     heading = style.title(results.name, "where and when the contact face slips")
     if left_out:
         heading += f" (the {MOST_PIECES} longest of {MOST_PIECES + left_out} pieces)"
-    steps = len(results.statistics.get("t", ())) - 1
     if steps > len(times) - 1:
         heading += f"\n{len(times) - 1} outputs of {steps} steps ('Output/Fields every')"
     figure.suptitle(heading, fontsize="large")

@@ -161,6 +161,8 @@ def robust(values, share, weights=None, beyond=1.15):
 def range_label(shade, label, values, unit, separator=" "):
     """The label of a color bar with how far `values` go beyond its ends."""
     low, high = (short(end / unit.size, 3) for end in (values.min(), values.max()))
+    if values.size and values.max() != 0.0 and np.ptp(values) <= 1e-9 * abs(values.max()):
+        return f"{unit.label(label)}{separator}({high} throughout)"
     beyond = {
         "neither": "",
         "max": f"{separator}(at most {high})",

@@ -13,7 +13,7 @@ from matplotlib.markers import CARETUP
 from matplotlib.patches import Patch
 from scipy.spatial import cKDTree
 
-from . import style
+from . import quantities, style
 from .expression import evaluate
 from .faces import is_unilateral
 from .geometry import chains
@@ -65,6 +65,13 @@ class Supports:
         reach = 0.6 if len(self.axes) == 2 else 0.75
         is_there = distance[row, held] <= reach * self.extents[near[row, held]]
         return np.where(is_there, self.numbers[near[row, held]], -1)
+
+    def name(self, centers):
+        """What the scene calls the boundary that most of these faces belong to, or
+        nothing."""
+        numbers, counts = np.unique(self.of(centers), return_counts=True)
+        found = quantities.names_of_places.get(f"boundary {numbers[counts.argmax()]}")
+        return quantities.plain(found) if found else None
 
     def role(self, number):
         """That of the scene; loaded pieces are not free, and contact may be
@@ -191,8 +198,8 @@ class Supports:
                 continue
             centers = self.centers[self.numbers == number]
             flat = np.ptp(centers, axis=0) < 1e-6 * np.ptp(self.centers, axis=0).max()
-            place = f"boundary {number}"
-            if flat.any():
+            place = quantities.place("boundary", number)
+            if flat.any() and place == f"boundary {number}":
                 d = int(np.argmax(flat))
                 at = centers[0, d] + 0.0
                 place = f"${'xyz'[d]}$ = {length.value(at)}"

@@ -3,7 +3,8 @@
 
 A scene may declare the units of length, time and stress; those of all other
 quantities follow.  Numbers stay those of the scene: an axis or a text shows
-them in a handy multiple of their unit, seconds as days where there are many,
+them in the scene's unit, as the program does, or where they are large or small in a
+handy multiple of it, seconds as days where there are many,
 or without units in a power of ten, which stands in the label.
 """
 
@@ -15,6 +16,7 @@ import numpy as np
 from matplotlib.ticker import MaxNLocator, ScalarFormatter
 
 PREFIXES = {"n": 1e-9, "µ": 1e-6, "m": 1e-3, "": 1.0, "k": 1e3, "M": 1e6, "G": 1e9}
+PREFIXES.update({"T": 1e12, "P": 1e15})
 DAY = 86400.0
 TIMES = {"s": 1.0, "min": 60.0, "h": 3600.0, "days": DAY, "years": 365.25 * DAY}
 ALIASES = {
@@ -65,6 +67,7 @@ def powers(kind, dimension):
         "rate norm": (0.5, 0.5 * dimension, -0.5),
         "velocity": (0, 1, -1),
         "rate": (0, 0, -1),
+        "temperature": (0, 0, 0),  # always in kelvins
     }[kind]
 
 
@@ -145,17 +148,38 @@ class Units:
     def unit(self, kind, values):
         """The unit for numbers up to the size of the values; of no kind, or where
         the scene does not say, a power of ten."""
+        if kind == "temperature":
+            return Unit(1.0, "K")
         largest = float(np.abs(values).max(initial=0.0)) if np.size(values) else 0.0
         power = power_of_ten(largest)
         needed = [name for name, _ in self.parts(kind)] if kind else []
         if not kind or any(name not in self.declared for name in needed):
             return Unit(10.0**power, ten(power))
-        if kind in self.declared and (largest == 0.0 or 1.0 <= largest < 1e4):
-            return Unit(1.0, self.declared[kind])
+        own = self.own(kind)
+        if own and (1.0 <= largest < 1e4 or (largest == 0.0 and kind in self.declared)):
+            return Unit(1.0, own)
         named = isinstance(kind, str) and kind.removeprefix(ROOT) in KINDS
         if named and all(name in self.known for name in needed):
             return self.multiple(kind, largest)
         return Unit(10.0**power, ten(power, self.composed(kind)))
+
+    def own(self, kind):
+        """What the program calls the unit of the scene's numbers, where that is short."""
+        if kind in self.declared:
+            return self.declared[kind]
+        length, time = self.declared.get("length"), self.declared.get("time")
+        if kind == "velocity":
+            return f"{length}/{time}"
+        base = {"force": "N", "section force": "N", "energy": "J"}.get(kind)
+        if not base or not {"length", "stress"} <= self.known.keys():
+            return None
+        power = 3 if kind == "energy" else 2
+        size = self.known["stress"] * self.known["length"] ** power
+        per = f"/{length}" if self.dimension == 2 and kind != "section force" else ""
+        return next(
+            (f"{p}{base}{per}" for p, of in PREFIXES.items() if abs(size / of - 1.0) < 1e-9),
+            None,
+        )
 
     def multiple(self, kind, largest):
         """The largest unit of the international system in which `largest` is
@@ -203,16 +227,22 @@ class Units:
         if kind in ("area", "volume"):
             power = powers(kind, self.dimension)[1]
             mark = {1: "", 2: "²", 3: "³"}[power]
-            return [Unit(1e-3**power, f"mm{mark}"), Unit(1.0, f"m{mark}")]
-        name = ORDERS.get(kind) or DERIVED[kind][self.dimension]
+            lengths = {"mm": 1e-3, "m": 1.0, "km": 1e3}
+            return [Unit(size**power, name + mark) for name, size in lengths.items()]
+        name, per = ORDERS.get(kind) or DERIVED[kind][self.dimension], 1.0
+        if kind in ("force", "energy") and name.endswith("/m"):
+            name, per = f"{name[:1]}/{self.declared['length']}", self.known["length"]
         return [
-            Unit(size, prefix + name)
+            Unit(size / per, prefix + name)
             for prefix, size in PREFIXES.items()
             if kind != "length" or size <= 1e3
         ]
 
     def pace(self):
-        """The time that velocities go by: years of runs over months, and so on."""
+        """The time that velocities go by: that of the scene, or instead of seconds
+        years of runs over months, and so on."""
+        if self.known["time"] > 1.0:
+            return next(name for name, of in TIMES.items() if of == self.known["time"])
         seconds = self.duration * self.known["time"]
         for name, least in (("years", 100 * DAY), ("days", 3 * DAY), ("h", 3 * 3600.0)):
             if seconds >= least:

@@ -8,7 +8,13 @@ import matplotlib
 import numpy as np
 
 from plotting import quantities, style
-from plotting.body_base import available_fields, field, folded, is_cell_data
+from plotting.body_base import (
+    available_fields,
+    factor_of_contact,
+    field,
+    folded,
+    is_cell_data,
+)
 from plotting.faces import friction_state
 from plotting.units import Units
 
@@ -159,11 +165,18 @@ class Body:
         self.units = Units.of(results)
         self.packed = Packed()
         names = names_of_interest(results)
-        surface_of, surface_of_face = Latest(Surface), Latest(Surface.of_face)
+        # Bodies that touch at first are told apart by where they go.
+        end = results.body()
+
+        def surface(record):
+            same = np.array_equal(record.points, end.points)
+            return Surface(record, moved=end["displacement"] if same else None)
+
+        surface_of, surface_of_face = Latest(surface), Latest(Surface.of_face)
         last, first = surface_of(results.body()), surface_of(results.body(0))
         n_outputs = len(results.solution)
         outputs, self.names = plan(first, last, n_outputs, names, self.dim, most)
-        self.frames = []
+        self.frames, self.outputs = [], outputs
         for output in outputs:
             record = results.body(output)
             there = [name for name in self.names if name in available_fields(record)]
@@ -196,6 +209,10 @@ class Body:
         record = self.results.body(self.results.index(time=time))
         size = self.frames[largest].ends["displacement"][1]
         factor = style.rounded_magnification(size, record.size)
+        if self.results.opposite:
+            ends = [self.results.face(self.outputs[i]) for i in (0, largest)]
+            most = factor_of_contact(ends)
+            factor = min(factor, max(most, 1.0))
         while factor > 1.0 and folded(record, factor).any():
             factor = max(style.next_smaller(factor), 1.0)
         return factor

@@ -101,6 +101,8 @@ def answer(results, about):
                 of = formula(quantities.column(about[key]["quantity"])[0])
             share = about[key]["relative"]
             words = f"<b>{tables.data(share, tables.percent(share))}</b>"
+            if about[key].get("largest_value") == 0.0:
+                words = "<b>not known</b>, since it has been zero throughout"
             parts.append(f"estimated error of {of} {words}")
     if not parts:
         parts.append(

@@ -20,12 +20,12 @@ class Surface:
     n_before  how many faces there were before they were thinned
     """
 
-    def __init__(self, record, most=MOST_FACES):
-        if record.cells.shape[1] == 4:
-            outline, _, vertex = boundary_faces(record, record.size)
-            faces = record.cells
-        else:
-            faces, _, vertex = boundary_faces(record, record.size)
+    def __init__(self, record, most=MOST_FACES, moved=None):
+        outline, _, vertex = boundary_faces(record, record.size, moved)
+        faces = record.cells
+        if record.cells.shape[1] != 4:
+            faces = outline
+            outline, _ = sharp_edges(faces, vertex, record.points)
             outline, _ = sharp_edges(faces, vertex, record.points)
         self.set_up(record, faces, outline, vertex, most)
 

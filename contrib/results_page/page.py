@@ -17,34 +17,30 @@ NOT_YET = "(not computed yet)\n"
 TEMPLATE = """\
 # What accuracy costs
 
-How fast errors fall, what an error costs, and how near estimates are to errors. Made by
-`contrib/make_results`, which runs the program and writes every number; the line under
-each part names version, machine and date. Each run is of one process. `contrib/study scene.prm` makes the same of your
-own scene ([study.md](study.md)).
+Made by `contrib/make_results`, which writes every number; the line under each part names version,
+machine and date. Each run is of one process. `contrib/study scene.prm` makes the same of your own
+scene ([study.md](study.md)).
 
 ## How to read this page
 
 Errors are relative: the largest of all steps over the largest norm of the solution; where
 they are differences to a finer run, of the steps that end a phase of `Time/Phases`.
 
-**Convergence.** An error $C h^p$ is a straight line of slope $p$. Where a curve is flat
-the error is the part that its ladder leaves alone. The dotted line is the fit
-$C_h h^p+C_k k^q$ of all runs, by which prices are predicted. In the gray below, differences
-say more of the reference than of the run.
+**Convergence.** Where a curve is flat the error is the part that its ladder leaves alone. The
+dotted line is the fit $C_h h^p+C_k k^q$ of all runs, by which prices are predicted. In the gray
+below, differences say more of the reference than of the run.
 
-**Work and precision.** Each point is a run: to the left is cheap, below is accurate.
-Yellow are the runs that no other one beats in both time and
-error.
+**Work and precision.** Each point is a run; yellow are those that no other one beats in both time
+and error.
 
 **Prices.** For each tolerance the cheapest run of the study that is at least so
-accurate. *Italics* are predictions for runs that nobody made, good to a factor of about two,
-and worse the further they are from the measured runs. **Bold** is the cheapest of a scene for an error, of measured ones if there are any.
+accurate. *Italics* are predictions for runs that nobody made, good to a factor of about two near
+the measured ones. **Bold** is the cheapest of a scene, of measured ones if there are any.
 
 ## Orders of convergence
 
-Manufactured solutions: displacement and stress are given by formulas, loads and
-a source in the law follow. The stick-slip front moves, and in three dimensions
-the direction of slip turns. Orders are those between the two finest runs of a
+Manufactured solutions, in which the stick-slip front moves and in three dimensions the direction
+of slip turns. Orders are those between the two finest runs of a
 ladder: of the error of $u$ in the energy norm, of $\\sigma$ in $L^2$ and of
 $\\lambda$ on $\\Gamma_3$, the least and the largest of all meshes (uniform, distorted,
 locally refined), schemes and laws of friction
@@ -80,8 +76,7 @@ The price list:
 With `Error control/Tolerance` the run chooses meshes and steps by itself
 ([error_bar.md](error_bar.md#7-runs-to-a-tolerance)). Manufactured solutions: the largest
 true error in the energy norm of all steps over the tolerance; size and seconds of the first
-law at the smallest tolerance ([accuracy_known_to_tolerance.csv](accuracy_known_to_tolerance.csv)
-has all).
+law at the smallest tolerance ([all](accuracy_known_to_tolerance.csv)).
 
 {known_to_tolerance}
 Bodies that have crept for 1000 relaxation times, with steps of backward Euler: estimates
@@ -91,11 +86,9 @@ these, of the energy norm and of a quantity. The reference has a quarter of the 
 relaxation times, is a row of [accuracy_long_creep.csv](accuracy_long_creep.csv).
 
 {long_creep}
-Four scenes drawn at random, the first of the grammar of `contrib/fuzz` with flow and
-friction that are not refused, with references of a quarter of the mesh width
-([accuracy_drawn.csv](accuracy_drawn.csv)). The ring has no solution of finite energy, as its
-runs say: it prescribes displacements that jump where boundaries meet, and the error to any
-reference is as large as one likes.
+Four scenes drawn at random by the grammar of `contrib/fuzz`, with references of a quarter of the
+mesh width ([accuracy_drawn.csv](accuracy_drawn.csv)). The ring has no solution of finite energy, as
+its runs say: prescribed displacements jump where boundaries meet.
 
 {drawn}
 The scenes of the pictures above and others, from their coarsest meshes, with
@@ -108,10 +101,9 @@ means over the steps. The last column is what uniform meshes take for the same e
 {to_tolerance}
 ## What the tolerance of the solver is worth
 
-By default the iterations of a step stop with the estimated error of discretization
-(`Error control/Algebraic fraction`). Against that stands `Solver/Contact tolerance` =
+The default (`Error control/Algebraic fraction`) against `Solver/Contact tolerance` =
 {fixed}, on the ladder of $h$ and $k$ of the scenes above. Times are sums over its runs; the
-last column is the largest relative change of an error of any of them.
+last column is the largest relative change of an error.
 
 {tolerance}
 ## Reference cases

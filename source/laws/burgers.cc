@@ -253,10 +253,7 @@ namespace Viscoplastic
         prm.declare_entry(entry,
                           value,
                           Patterns::Anything(),
-                          help +
-                            std::string(", an expression of position and "
-                                        "t. Unit: ") +
-                            unit + ".");
+                          help + std::string(". Unit: ") + unit + ".");
     }
 
     void
@@ -288,13 +285,9 @@ namespace Viscoplastic
     law.name = "burgers";
     law.help =
       "G = -E (dev(sigma)/(2 eta_M) + e'), e' = (dev(sigma) - 2 G_K "
-      "e)/(2 eta_K): a Maxwell and a Kelvin body in series, steady creep "
-      "after a transient one, which comes back when the load has gone. The "
-      "deviator e, the strain of the Kelvin body, is the history of the law. "
-      "Under a constant stress dev(eps) = dev(sigma) (1/mu + t/eta_M + (1 - "
-      "exp(-t G_K/eta_K))/G_K)/2. Reference: W. N. Findley, J. S. Lai, K. "
-      "Onaran, Creep and Relaxation of Nonlinear Viscoelastic Materials, "
-      "North-Holland 1976, chapter 5.";
+      "e)/(2 eta_K): steady creep after a transient one, whose strain e "
+      "comes back when the load has gone. (Findley, Lai, Onaran, as of "
+      "maxwell.)";
     law.declare = declare_burgers;
     law.make    = [](const LawSection &section) {
       return std::make_unique<Burgers>(section, /* is_linear = */ true);
@@ -310,11 +303,11 @@ namespace Viscoplastic
     LawDescription law;
     law.name = "lubby2";
     law.help =
-      "burgers for rock salt: eta_M, G_K and eta_K, given for small stresses, "
-      "are multiplied by exp(m sigma_eq), exp(k_1 sigma_eq) and exp(k_2 "
-      "sigma_eq) with the von Mises stress sigma_eq and exponents that are "
-      "zero or negative. Reference: K.-H. Lux, Gebirgsmechanischer Entwurf "
-      "und Felderfahrungen im Salzkavernenbau, Enke 1984.";
+      "burgers for rock salt: eta_M, G_K and eta_K, given for small "
+      "stresses, are multiplied by exp(m sigma_eq), exp(k_1 sigma_eq) "
+      "and exp(k_2 sigma_eq) with the von Mises stress sigma_eq. (Lux, "
+      "Gebirgsmechanischer Entwurf und Felderfahrungen im "
+      "Salzkavernenbau, 1984.)";
     law.declare = [](ParameterHandler &prm) {
       declare_burgers(prm);
       declare(prm,

@@ -46,19 +46,16 @@ namespace Viscoplastic
     LawDescription law;
     law.name = "maxwell";
     law.help =
-      "G = -E dev(sigma)/(2 eta), for an isotropic body -(mu/eta) dev(sigma): "
-      "a linear viscoelastic fluid, elastic under pressure and creeping "
-      "under any shear stress. At fixed strain the deviator of the stress "
-      "decays like exp(-t mu/eta). eta is the `Viscosity', as of a Newtonian "
-      "fluid. Reference: W. N. Findley, J. S. Lai, K. Onaran, Creep and "
-      "Relaxation of Nonlinear Viscoelastic Materials, North-Holland 1976, "
-      "chapter 5.";
+      "G = -E dev(sigma)/(2 eta): a linear viscoelastic fluid, elastic "
+      "under pressure. At fixed strain the deviator of the stress decays "
+      "like exp(-t mu/eta). (Findley, Lai, Onaran, Creep and Relaxation "
+      "of Nonlinear Viscoelastic Materials, 1976, chapter 5.)";
     law.declare = [](ParameterHandler &prm) {
       prm.declare_entry("Viscosity",
                         "0.5",
                         Patterns::Anything(),
-                        "The shear viscosity eta > 0, an expression of "
-                        "position and t. Unit: stress times time.");
+                        "The shear viscosity eta > 0. Unit: stress times "
+                        "time.");
     };
     law.make = [](const LawSection &section) {
       return std::make_unique<Maxwell>(section);

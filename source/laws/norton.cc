@@ -109,31 +109,25 @@ namespace Viscoplastic
     law.name = "norton";
     law.help =
       "G = -E (3/2) A sigma_eq^n dev(sigma)/sigma_eq with the von Mises "
-      "stress sigma_eq = sqrt(3/2) |dev(sigma)|: steady creep by a power law, "
-      "in a tensile test at the strain rate A sigma^n. At a given "
-      "temperature T the `Rate factor' A is A_0 exp(-Q/(R T)); with n = 1 the "
-      "law is maxwell with eta = 1/(3 A). Beyond the `Stress cap' the strain "
-      "rate grows linearly, since the theory asks for a Lipschitz function: "
-      "choose it well above the stress you expect. Reference: F. H. Norton, "
-      "The Creep of Steel at High Temperatures, McGraw-Hill 1929; "
-      "three-dimensional form: F. K. G. Odqvist, Mathematical Theory of Creep "
-      "and Creep Rupture, Clarendon Press 1966.";
+      "stress sigma_eq: steady creep by a power law, in a tensile test "
+      "at the strain rate A sigma^n; n = 1 is maxwell with eta = 1/(3 "
+      "A). (Norton, The Creep of Steel at High Temperatures, 1929; "
+      "Odqvist, Mathematical Theory of Creep and Creep Rupture, 1966.)";
     law.declare = [](ParameterHandler &prm) {
       prm.declare_entry("Rate factor",
                         "1",
                         Patterns::Anything(),
-                        "A >= 0, an expression of position and t. Unit: "
-                        "1/(stress^n time).");
+                        "A >= 0. Unit: 1/(stress^n time).");
       prm.declare_entry("Exponent",
                         "3",
                         Patterns::Anything(),
-                        "n >= 1, an expression of position and t. Unit: 1.");
+                        "n >= 1. Unit: 1.");
       prm.declare_entry("Stress cap",
                         "",
                         Patterns::Anything(),
                         "The von Mises stress c > 0 beyond which the power is "
-                        "continued by its tangent, an expression of position "
-                        "and t; it has to be given. Unit: stress.");
+                        "continued by its tangent: well above the stress you "
+                        "expect. It has to be given. Unit: stress.");
     };
     law.make = [](const LawSection &section) {
       AssertThrow(!section.prm.get("Stress cap").empty(),

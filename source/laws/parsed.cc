@@ -210,17 +210,16 @@ namespace Viscoplastic
     LawDescription law;
     law.name = "parsed";
     law.help =
-      "G = -E (3/2) F f dev(sigma)/sigma_eq with an equivalent strain rate "
-      "f(sigma_eq, p, eps_eq, t) >= 0 of your own, the `Strain rate', and a "
-      "`Factor' F of position and t. sigma_eq is the von Mises stress, p = "
-      "-tr(sigma)/3 the pressure, eps_eq = sqrt(2/3) |dev(eps - E^-1 sigma)| "
-      "is the present equivalent viscoplastic strain. Without deviatoric "
-      "stress there is no flow. The theory asks for a Lipschitz function, "
-      "which is yours to choose: let f vanish at sigma_eq = 0 and limit "
-      "powers, as in 1e-3*min(sigma_eq, 2e7)^3. Examples: "
+      "G = -E (3/2) F f dev(sigma)/sigma_eq with an equivalent strain "
+      "rate f(sigma_eq, p, eps_eq, t) of your own and a `Factor' F. "
+      "sigma_eq is the von Mises stress, p = -tr(sigma)/3 the pressure, "
+      "eps_eq = sqrt(2/3) |dev(eps - E^-1 sigma)| the present equivalent "
+      "viscoplastic strain. Let f vanish at sigma_eq = 0 and limit "
+      "powers (the theory asks for a Lipschitz function), as in "
+      "1e-3*min(sigma_eq, 2e7)^3. Examples: "
       "1e-21*sigma_eq^2*exp(-eps_eq/0.1) for primary creep, 1e-12*max(0, "
-      "sigma_eq - 1e6 - 0.5*p) for flow beyond a yield stress that grows with "
-      "pressure.";
+      "sigma_eq - 1e6 - 0.5*p) for flow beyond a yield stress that grows "
+      "with pressure.";
     law.declare = [](ParameterHandler &prm) {
       prm.declare_entry("Strain rate",
                         "sigma_eq",
@@ -230,7 +229,7 @@ namespace Viscoplastic
       prm.declare_entry("Factor",
                         "1",
                         Patterns::Anything(),
-                        "F >= 0, an expression of position and t. Unit: 1.");
+                        "F >= 0. Unit: 1.");
     };
     law.make = [](const LawSection &section) {
       return std::make_unique<Parsed>(section);

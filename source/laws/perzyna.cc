@@ -156,38 +156,29 @@ namespace Viscoplastic
     law.name = "perzyna";
     law.help =
       "G = -(1/lambda) E (sigma - P_K sigma), where P_K projects on the "
-      "elastic range K of all stresses with |dev(sigma)| <= R in the "
-      "Frobenius norm: elastic inside K, and flowing in proportion to the "
-      "distance from K outside. R = k_Y + H eps_eq hardens linearly with the "
-      "present equivalent viscoplastic strain eps_eq = sqrt(2/3) |dev(eps - "
-      "E^-1 sigma)|, not with its path: flow that returns softens again. "
-      "Without hardening, excess stress held at fixed strain decays like "
-      "exp(-2 mu t/lambda) back to K. k_Y is the yield stress of a tensile "
-      "test times sqrt(2/3), or of a shear test times sqrt(2), H the slope of "
-      "that tensile yield stress over eps_eq times sqrt(2/3), lambda twice "
-      "the shear viscosity of the flow beyond K. With k_Y = H = 0 it is "
-      "maxwell with eta = lambda/2. Reference: P. Perzyna, Fundamental "
-      "problems in viscoplasticity, Advances in Applied Mechanics 9 (1966) "
-      "243-377; the form with P_K is that of G. Duvaut, J.-L. Lions, "
-      "Inequalities in Mechanics and Physics, Springer 1976, chapter 5.";
+      "elastic range |dev(sigma)| <= R = k_Y + H eps_eq (Frobenius "
+      "norm), eps_eq = sqrt(2/3) |dev(eps - E^-1 sigma)| the present "
+      "equivalent viscoplastic strain: flow that returns softens again. "
+      "k_Y is the yield stress of a tensile test times sqrt(2/3), of a "
+      "shear test times sqrt(2); H the slope of the tensile one over "
+      "eps_eq times sqrt(2/3); lambda twice the shear viscosity beyond "
+      "the range. (Perzyna, Advances in Applied Mechanics 9, 1966, "
+      "243-377; Duvaut, Lions, Inequalities in Mechanics and Physics, "
+      "1976, chapter 5.)";
     law.declare = [](ParameterHandler &prm) {
       prm.declare_entry("Yield radius",
                         "0.1",
                         Patterns::Anything(),
-                        "The radius k_Y >= 0 of the elastic range, the "
-                        "largest Frobenius norm of dev(sigma) without flow, "
-                        "an expression of position and t. Unit: stress.");
+                        "The radius k_Y >= 0 of the elastic range. Unit: "
+                        "stress.");
       prm.declare_entry("Hardening modulus",
                         "0",
                         Patterns::Anything(),
-                        "H >= 0, by which the radius grows with the "
-                        "equivalent viscoplastic strain, an expression of "
-                        "position and t. Unit: stress.");
+                        "H >= 0. Unit: stress.");
       prm.declare_entry("Viscosity",
                         "1",
                         Patterns::Anything(),
-                        "The viscosity lambda > 0, an expression of position "
-                        "and t. Unit: stress times time.");
+                        "lambda > 0. Unit: stress times time.");
     };
     law.make = [](const LawSection &section) {
       return std::make_unique<Perzyna>(section);

@@ -357,32 +357,27 @@ namespace Viscoplastic
     LawDescription law;
     law.name = "zener";
     law.help =
-      "G = -(1/theta) (sigma - E_inf eps), the standard linear solid: a "
-      "viscoelastic solid with the elastic tensor E at once and the isotropic "
-      "tensor E_inf <= E in the long term, pressure included. The stress "
-      "that a fixed strain leaves beyond E_inf eps decays like exp(-t/theta); "
-      "under constant stress the strain creeps towards E_inf^-1 sigma. Its "
-      "bulk and shear modulus must not exceed those of E; where one of them "
-      "equals that of E, that part does not relax. With a long-term Poisson's "
-      "ratio near 1/2 choose mean dilatation. Reference: C. Zener, "
-      "Elasticity and Anelasticity of Metals, University of Chicago Press "
-      "1948, chapter 5.";
+      "G = -(1/theta) (sigma - E_inf eps), the standard linear solid: "
+      "the elastic tensor E at once, the isotropic tensor E_inf in the "
+      "long term, pressure included. At fixed strain the stress decays "
+      "like exp(-t/theta) to E_inf eps. Bulk and shear modulus must not "
+      "exceed those of E; one that equals that of E does not relax. "
+      "(Zener, Elasticity and Anelasticity of Metals, 1948, chapter 5.)";
     law.declare = [](ParameterHandler &prm) {
       prm.declare_entry("Long-term Young's modulus",
                         "0.5",
                         Patterns::Anything(),
-                        "Young's modulus of E_inf, zero or positive, an "
-                        "expression of position. Unit: stress.");
+                        "Young's modulus of E_inf, zero or positive, of "
+                        "position alone. Unit: stress.");
       prm.declare_entry("Long-term Poisson's ratio",
                         "0.3",
                         Patterns::Anything(),
-                        "Poisson's ratio of E_inf in (-1, 1/2), an expression "
-                        "of position. Unit: 1.");
+                        "Poisson's ratio of E_inf in (-1, 1/2), likewise. "
+                        "Unit: 1.");
       prm.declare_entry("Relaxation time",
                         "1",
                         Patterns::Anything(),
-                        "theta > 0 at fixed strain, an expression of position "
-                        "and t. Unit: time.");
+                        "theta > 0 at fixed strain. Unit: time.");
     };
     law.make = [](const LawSection &section) {
       return std::make_unique<Zener>(section);

@@ -135,7 +135,8 @@ namespace Viscoplastic
     prm.add_parameter("Law",
                       law,
                       "The function G of (1.1), the viscous part of the "
-                      "stress rate. " +
+                      "stress rate. The entries of a law are expressions of "
+                      "position and t. " +
                         viscoplastic_law_help(laws),
                       Patterns::Selection(viscoplastic_law_names(laws)));
     declare_viscoplastic_law_parameters(prm, laws);

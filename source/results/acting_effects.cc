@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <viscoplastic_contact/base/messages.h>
 #include <viscoplastic_contact/results/acting_effects.h>
 
 #include <iomanip>
@@ -108,6 +109,14 @@ namespace Viscoplastic
                                        const RunSummary<dim> &run) const
   {
     std::vector<std::string> result;
+    // On a mesh that is far too coarse bodies may never meet.
+    const double      error    = run.errors && run.errors->size > 0. ?
+                                   run.errors->largest.space / run.errors->size :
+                                   0.;
+    const bool        is_rough = error > 0.3;
+    const std::string on_this_mesh =
+      "which with an error of the mesh of " + number(100. * error, 2) +
+      " % in the energy norm a finer one may change.";
     if (run.has_viscosity && !run.has_flowed)
       {
         std::string text = "viscoplastic flow has never acted: no material has "
@@ -122,10 +131,12 @@ namespace Viscoplastic
       }
     if (scene.has_friction() && !has_bound)
       result.push_back("friction has never acted: its bound has been zero "
-                       "everywhere and at all times, and contact without "
-                       "friction ('Friction law' = none if it is bilateral, "
-                       "'Role' = traction if its pressure is given) gives the "
-                       "same for less.");
+                       "everywhere and at all times, " +
+                       (is_rough ?
+                          on_this_mesh :
+                          "and contact without friction ('Friction law' = none "
+                          "if it is bilateral, 'Role' = traction if its "
+                          "pressure is given) gives the same for less."));
     else if (scene.has_friction() && run.slip_area.value == 0.)
       {
         std::ostringstream text;
@@ -161,8 +172,9 @@ namespace Viscoplastic
     else if (scene.has_unilateral_contact() && !has_touched && !has_given_bound)
       result.push_back(
         "unilateral contact has never acted: nothing has touched "
-        "the foundation, and 'Role' = free gives the same for "
-        "less.");
+        "the foundation, " +
+        (is_rough ? on_this_mesh :
+                    "and 'Role' = free gives the same for less."));
     else if (scene.has_unilateral_contact() && has_touched && !has_opened &&
              !has_computed_pressure && !gives_way)
       result.push_back("unilateral contact has never opened: everything has "

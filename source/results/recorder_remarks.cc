@@ -361,22 +361,25 @@ namespace Viscoplastic
     if (const double missing = balance.defect(),
         friction             = balance.friction_dissipation();
         run.has_friction && !scene.has_stages() &&
-        std::abs(missing) > 0.1 * friction &&
+        std::abs(missing) > 0.05 * friction &&
         std::abs(missing) > 1e-3 * balance.scale())
       result.push_back(
         "Note: friction has dissipated " + number(friction) +
         scene.unit(Quantity::energy) + ", by the balance of energy rather " +
         number(std::max(friction + missing, 0.), 3) +
         scene.unit(Quantity::energy) +
-        ": the sum takes the friction at the ends of steps, which changes "
-        "within them; shorter steps mend this, which 'Error control/Quantity' "
-        "= friction_dissipation chooses.");
+        ": what is true lies between, as a rule. The sum takes the friction "
+        "at the ends of steps, which changes within them; shorter steps mend "
+        "this, which 'Error control/Quantity' = friction_dissipation "
+        "chooses.");
 
     if (run.has_zero_quantity())
       result.push_back("Warning: '" +
                        scene.names.quantity(scene.quantity->name) +
                        "' is zero throughout, but for rounding; no tolerance "
-                       "relative to it means anything.");
+                       "relative to it means anything. Where it should not "
+                       "be, begin with a finer mesh ('Geometry/Global "
+                       "refinements').");
     else if (budget && run.controlled_errors().relative() > budget->tolerance)
       result.push_back(remark_on_tolerance());
 

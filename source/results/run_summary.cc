@@ -3,7 +3,11 @@
 #include <viscoplastic_contact/base/types.h>
 #include <viscoplastic_contact/results/run_summary.h>
 
+#include <algorithm>
+#include <cmath>
 #include <iomanip>
+#include <iterator>
+#include <regex>
 #include <sstream>
 
 namespace Viscoplastic
@@ -21,6 +25,39 @@ namespace Viscoplastic
     }
 
 
+    /// Numbers with a unit, in a handy multiple of it where they are large or
+    /// small, as pictures show them: 0.2 mm for 0.0002 m.
+    std::string
+    with_unit(const std::vector<double> &values, std::string unit)
+    {
+      double largest = 0., scale = 1.;
+      for (const double value : values)
+        largest = std::max(largest, std::abs(value));
+      static const std::regex  prefixed("([numkMGTP]?)(m|N|J|Pa)(/.*)?");
+      static const std::string prefixes[]{
+        "n", "u", "m", "", "k", "M", "G", "T", "P"};
+      constexpr int n_prefixes = std::size(prefixes);
+      std::smatch   match;
+      if (largest > 0. && (largest < 1. || largest >= 1e4) &&
+          std::regex_match(unit, match, prefixed))
+        {
+          int which =
+            std::find(prefixes, prefixes + n_prefixes, match[1]) - prefixes;
+          const int last = match[2] == "m" ? 4 : n_prefixes - 1;
+          for (; which > 0 && largest / scale < 1.; --which)
+            scale *= 1e-3;
+          for (; which < last && largest / scale >= 1e3; ++which)
+            scale *= 1e3;
+          unit = prefixes[which] + match[2].str() + match[3].str();
+        }
+      std::string text;
+      for (const double value : values)
+        text += (text.empty() ? "" : "; ") + number(value / scale);
+      return text + (unit.empty() ? "" : ' ' + unit);
+    }
+
+
+
     /// Numbers behind which their units stand, if the scene declares any.
     template <int dim>
     struct WithUnits
@@ -36,7 +73,7 @@ namespace Viscoplastic
       std::string
       at_time(const Largest &largest, const Quantity quantity) const
       {
-        return number(largest.value) + units.suffix(quantity, dim) +
+        return with_unit({largest.value}, units.name(quantity, dim)) +
                " at t = " + time(largest.t);
       }
     };
@@ -52,17 +89,26 @@ namespace Viscoplastic
               const RunSummary<dim> &run)
     {
       out << "At t = " << WithUnits<dim>{units}.time(run.t) << ":\n";
+      // Forces that vanish leave what the solver's tolerance is.
+      constexpr double noise         = 1e-5;
+      double           largest_force = 0.;
+      for (const StatisticsRow::Entry &entry : run.at_end)
+        if (entry.quantity == Quantity::force)
+          for (const double force : entry.values)
+            largest_force = std::max(largest_force, std::abs(force));
       for (const StatisticsRow::Entry &entry : run.at_end)
         {
           // New meshes may all have been those of passes before.
           if (entry.name == "adaptation_energy" && entry.values[0] == 0.)
             continue;
-          std::ostringstream text;
-          for (std::size_t i = 0; i < entry.values.size(); ++i)
-            text << (i > 0 ? "; " : "") << number(entry.values[i]);
+          std::vector<double> values = entry.values;
+          for (double &value : values)
+            if (entry.quantity == Quantity::force &&
+                std::abs(value) < noise * largest_force)
+              value = 0.;
           print_row(out,
                     names.words(entry.name),
-                    text.str() + units.suffix(entry.quantity, dim));
+                    with_unit(values, units.name(entry.quantity, dim)));
         }
       if (run.error_estimate)
         print_row(out, "error estimate", number(*run.error_estimate));

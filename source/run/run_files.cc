@@ -221,7 +221,11 @@ namespace Viscoplastic
       }
     std::ostringstream error;
     if (const auto relative = run.recorder.relative_error(run.accepted.errors))
-      error << " The error up to there is estimated as " << std::setprecision(2)
+      error << " The error "
+            << (run.scene.quantity ?
+                  "of " + run.scene.names.quantity(run.scene.quantity->name) :
+                  "in the energy norm")
+            << " up to there is estimated as " << std::setprecision(2)
             << 100. * *relative << " %.";
     const std::string interruption = stop +
                                      " has ended the run after the checkpoint "

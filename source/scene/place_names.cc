@@ -94,8 +94,10 @@ namespace Viscoplastic
     add_list("point", parameters.output.points, "Output/Points");
     add_list("line", parameters.output.lines, "Output/Lines");
 
-    // Of groups, those that can be names and are not taken.
-    const GeometryParameters &geometry = parameters.geometry;
+    // Of groups, those that can be names. One may be both material and
+    // boundary; what the scene names itself is nothing else.
+    const std::map<PlaceNumber, std::string> given    = names;
+    const GeometryParameters                &geometry = parameters.geometry;
     if (geometry.file.empty())
       return;
     for (const auto &[group, name] : physical_names(geometry.file))
@@ -106,7 +108,15 @@ namespace Viscoplastic
           continue;
         const PlaceNumber place{is_body ? "material" : "boundary",
                                 group.second};
-        if (names.count(place) == 0 && !find(name))
+        if (names.count(place) == 1)
+          continue;
+        for (const auto &[other, taken] : given)
+          AssertThrow(taken != name,
+                      ExcMessage("The scene calls " + other.text() + " '" +
+                                 excerpt(name) + "', as '" + geometry.file +
+                                 "' calls " + place.text() +
+                                 "; take another name."));
+        if (!find(name))
           try
             {
               check_name(name, geometry.file);

@@ -139,6 +139,24 @@ class NeverActed(TestCase):
             ("glued",),
         )
 
+    def test_contact_that_is_not_reached(self):
+        """Which a mesh may be too coarse for."""
+        words = "'Role' = free gives the same", "a finer one may change"
+        for cells, said, unsaid in ("64, 32", *words), ("2, 1", *words[::-1]):
+            self.check(
+                "slab",
+                {
+                    **SMALL,
+                    "Geometry/Arguments": f"{cells} : 0, 0 : 2, 1 : true",
+                    "Boundary 2/Contact law": "unilateral",
+                    "Boundary 2/Friction law": "none",
+                    "Boundary 2/Gap": 10,
+                    "Time/Phases": "1: 1",
+                },
+                ("has touched the foundation", said),
+                (unsaid,),
+            )
+
     def test_foundation_at_rest(self):
         self.check(
             "conveyor_2d",

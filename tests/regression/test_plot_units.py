@@ -19,7 +19,7 @@ matplotlib.use("Agg")
 
 import matplotlib.pyplot as plt
 from plotting import history, hysteresis, overview, quantities, style
-from plotting.body_base import Scale, folded
+from plotting.body_base import Scale, factor_of_contact, folded
 from plotting.geometry import corner_volumes
 from plotting.results import NoPicture, Results, UserError, read_statistics
 from plotting.supports import Supports, draw_body_force
@@ -56,9 +56,12 @@ class Handy(TestCase):
             (SI, 3, "time", 3.4e7, "days", DAY),
             (SI, 3, "time", 5 * year, "years", year),
             (SI, 2, "force", 9.1e7, "MN/m", 1e6),
-            (SI, 3, "force", 3.4e3, "kN", 1e3),
+            (SI, 3, "force", 3.4e3, "N", 1),
+            (SI, 3, "force", 3.4e4, "kN", 1e3),
             (SI, 2, "energy", 5.4, "J/m", 1),
             (SI, 3, "area", 6e-4, "mm²", 1e-6),
+            (SI, 3, "area", 3e7, "km²", 1e6),
+            (SI, 3, "force", 9.3e13, "TN", 1e12),
             (SI, 2, "force density", 2.5e4, "kN/m³", 1e3),
             (SI, 3, "velocity", 2e-5, "µm/s", 1e-6),
             (SI, 2, "energy norm", 0.5, "(J/m)$^{1/2}$", 1),
@@ -66,7 +69,12 @@ class Handy(TestCase):
             (SI, 2, "root of section force", 0.5, "(N)$^{1/2}$", 1),
             # what follows from other units: MPa mm^2 = N, MPa mm = kN/m
             ({"length": "mm", "time": "s", "stress": "MPa"}, 3, "force", 20.0, "N", 1),
-            ({"length": "mm", "time": "s", "stress": "MPa"}, 2, "force", 20.0, "kN/m", 1),
+            # as the program prints them
+            ({"length": "mm", "time": "s", "stress": "MPa"}, 2, "force", 20.0, "N/mm", 1),
+            ({"length": "mm", "time": "h", "stress": "MPa"}, 2, "energy", 20.0, "mJ/mm", 1),
+            ({"length": "mm", "time": "h", "stress": "MPa"}, 2, "energy", 2e4, "J/mm", 1e3),
+            ({"length": "mm", "time": "h", "stress": "MPa"}, 3, "velocity", 2.0, "mm/h", 1),
+            ({"length": "m", "time": "day", "stress": "MPa"}, 2, "velocity", 3e-6, "µm/day", 1e-6),
             ({"length": "mm", "time": "day", "stress": "MPa"}, 3, "time", 40.0, "day", 1),
             # no unit of the system: as the scene has it, in powers of ten
             ({"length": "in", "stress": "psi"}, 3, "force", 12.0, "psi in$^{2}$", 1),
@@ -166,6 +174,17 @@ class Handy(TestCase):
 
 
 class Folding(TestCase):
+    def test_bodies_are_not_drawn_over_each_other(self):
+        """A gap of 5 that closes to 2 at one node of two: 5/3 times at most."""
+        points = np.array([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0]])
+        before, now = Square(points, {}), Square(points[::-1], {})
+        before["gap"], now["gap"] = np.array([5.0, 0.0]), np.array([0.0, 2.0])
+        self.assertClose(factor_of_contact((before, now)), 5 / 3, relative=1e-12)
+        now["gap"] = np.array([0.0, 0.0])
+        self.assertClose(factor_of_contact((before, now)), 1, relative=1e-12)
+        now["gap"] = np.array([0.0, 5.0])
+        self.assertGreater(factor_of_contact((before, now)), 1e300 / 1e10)
+
     def test_volumes_of_corners(self):
         """Of a brick all are its volume, with the sign of its orientation."""
         square = np.array([(0, 0), (1, 0), (1, 1), (0, 1)], float)
@@ -200,6 +219,7 @@ class Folding(TestCase):
             boundary=lambda: None,
             dimension=lambda: 2,
             is_of_revolution=lambda: False,
+            opposite=False,
         )
         options = SimpleNamespace(magnification=None, mirror=None, window=None, label=[])
         self.assertEqual(Scale(results, [0], "von_mises", options).magnification, 20)
@@ -400,6 +420,52 @@ class Supported(TestCase):
         self.addCleanup(plt.close, figure)
         title = figure.axes[0].get_title()
         self.assertIn("= -2 J/m: work by the body per unit depth", title)
+
+    def test_loops_are_of_a_force_and_what_it_acts_on(self):
+        """A block on boundary 2, pulled at its end 0, where the first point is."""
+        corners = [[0, 0], [0, 1], [2, 0], [2, 1], [0, 0], [2, 0], [0, 1], [2, 1]]
+        edges = Square(
+            np.column_stack([corners, np.zeros(8)]),
+            {"boundary_id": np.repeat([0, 1, 2, 3], 2)},
+        )
+        edges.cells, edges.size = np.arange(8).reshape(4, 2), 2.0
+        t = np.linspace(0.0, 1.0, 5)
+        names = ["friction_force_x", "load_x", "reaction_3_x", "point0_x", "point1_x"]
+        results = SimpleNamespace(
+            statistics={"t": t, "friction_dissipation": t, **dict.fromkeys(names, t)},
+            data={
+                ("Boundary 0", "Traction"): "t; 0",
+                ("Boundary 3", "Pressure"): "5",
+                ("Boundary 2", "Role"): "contact",
+                ("Output", "Points"): "grip = 0, 0.5; 1, 1",
+            },
+            boundary=lambda: edges,
+            dimension=lambda: 2,
+        )
+
+        def pair(force=None, displacement=None):
+            options = SimpleNamespace(force=force, displacement=displacement)
+            statistics = results.statistics
+            return hysteresis.pair(
+                results,
+                options,
+                hysteresis.forces(statistics),
+                hysteresis.displacements(results, statistics),
+            )
+
+        self.assertEqual(pair(), ("load_x", "point0_x"))
+        self.assertEqual(pair("reaction_3_x"), ("reaction_3_x", "point1_x"))
+        with self.assertRaisesRegex(NoPicture, "what it acts on is known"):
+            pair("friction_force_x")
+        both = "friction_force_x", "point0_x"
+        self.assertEqual(pair(*both), both)
+        # Two ends with a load; a point on the floor.
+        results.data["Boundary 1", "Pressure"] = "5"
+        results.data["Output", "Points"] = "corner = 0, 0; 1, 1"
+        self.assertEqual(pair(), ("friction_force_x", "point0_x"))
+        # Between bodies both sides move.
+        results.data["Boundary 2", "Against"] = "table"
+        self.assertEqual(pair(), ("reaction_3_x", "point1_x"))
 
 
 if __name__ == "__main__":

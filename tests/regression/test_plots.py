@@ -52,6 +52,7 @@ from plotting.results import (
     Record,
     Results,
     UserError,
+    by_numbers,
     read_parameters,
     read_statistics,
 )
@@ -112,6 +113,7 @@ def block(*extent, cells=(4, 2, 3), displacement=0.0):
         dimension=lambda: dim,
         is_of_revolution=lambda: False,
         rest=0.0,
+        opposite=False,
     )
 
 
@@ -153,6 +155,7 @@ def sliding_block():
         dimension=lambda: 3,
         is_of_revolution=lambda: False,
         rest=0.0,
+        opposite=False,
     )
 
 
@@ -748,9 +751,10 @@ class Numbers(TestCase):
                 "contact_force_4_x/reaction_3_x",
             ),
             ("displacement_y of crown+point1_y", "point10_y+point1_y"),
+            ("stress_xx of crown", "point10_stress_xx"),
             ("reaction_y of roofing", "reaction_y of roofing"),
         ):
-            self.assertEqual(derived.by_numbers(text, names), expected)
+            self.assertEqual(by_numbers(text, names), expected)
 
     def test_another_run_is_drawn_in_the_units_of_this_one(self):
         t, force = np.array([0.0, 1.0, 2.0]), np.array([0.0, 1.0, 3.0])
@@ -909,11 +913,15 @@ class Pictures(TestCase):
         record.data["gap"] = np.ones(len(record.points))
         results.read, results.contact = lambda path: record, results.contact[:4]
         results.dimension = lambda: 2
-        figure = stick_slip.draw(results, None)
+        anytime = SimpleNamespace(begin=None, until=None)
+        figure = stick_slip.draw(results, anytime)
         self.addCleanup(plt.close, figure)
         self.assertIn("3 outputs of 32 steps", figure._suptitle.get_text())
         (rates,) = figure.axes[1].collections
         self.assertTrue(np.ma.getmaskarray(rates.get_array()).all())
+        times = [time for time, _ in results.contact]
+        later = SimpleNamespace(begin=times[1], until=times[3])
+        self.assertEqual(stick_slip.outputs(results, later), results.contact[1:])
         from plotting.faces import friction_state
 
         results = Results(result.directory)

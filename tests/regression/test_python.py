@@ -94,6 +94,15 @@ class Runs(TestCase):
         with self.assertRaisesRegex(UserError, 'no column "friction"; it has step, t'):
             self.results["friction"]
 
+    def test_names_of_places(self):
+        np.testing.assert_array_equal(
+            self.results.vector("displacement of corner"), self.results.vector("point0")
+        )
+        self.assertIn("displacement_x of corner", self.results)
+        self.assertEqual(self.results.names["boundary 2"], "floor")
+        with self.assertRaisesRegex(UserError, "places are floor, corner"):
+            self.results["displacement_x of edge"]
+
     def test_fields(self):
         body, fields = self.results.body(), self.read.fields()
         np.testing.assert_array_equal(body.points, fields.points)
@@ -119,6 +128,11 @@ class Runs(TestCase):
         line = results.line()
         np.testing.assert_allclose(line["s"][-3:], [0, 0.5, 1])
         self.assertEqual(len(line["stress_xy"]), 3 * len(results.solution))
+        named = {**SHORT, "Output/Lines": "side = 0, 0 : 0, 1 : 4; floor line = 0, 0 : 1, 0 : 3"}
+        results = self.program.run(page_scene(), self.work / "lines", overrides=named)
+        np.testing.assert_allclose(results.line("floor line")["s"][-3:], [0, 0.5, 1])
+        with self.assertRaisesRegex(UserError, "name corner"):
+            results.line("corner")
 
     def test_record(self):
         self.assertEqual(

@@ -551,6 +551,31 @@ class Parts(TestCase):
         expected = points[surface.vertices][surface.faces].mean(axis=1)[:, 0]
         self.assertClose(on_faces, expected, 1e-12)
 
+    def test_bodies_that_touch_move_by_themselves(self):
+        """Two cells, one over the other without a gap: two bodies where they part."""
+        square = np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]], float)
+        points = np.concatenate([square, square + [0, 1, 0]])
+        record = SimpleNamespace(
+            points=points, cells=np.arange(8).reshape(2, 4), size=2.0, data={}
+        )
+        apart = np.repeat([[0.0, 0.0, 0.0], [0.3, 0.0, 0.0]], 4, axis=0)
+        for moved, n_vertices, n_edges in ((0 * apart, 6, 6), (apart, 8, 8)):
+            for given in (None, moved):
+                record.data = {} if given is not None else {"displacement": moved}
+                surface = Surface(record, moved=given)
+                self.assertEqual(len(surface.vertices), n_vertices)
+                self.assertEqual(len(surface.edges), n_edges)
+        # Of two cubes the faces between them are seen where they part.
+        below = np.concatenate([square, square + [0, 0, 1]])
+        for way, n_faces in (0.0, 10), (0.3, 12):
+            record = SimpleNamespace(
+                points=np.concatenate([below, below + [0, 0, 1]]),
+                cells=np.arange(16).reshape(2, 8),
+                size=2.0,
+                data={"displacement": np.repeat([[0, 0, 0], [way, 0, 0]], 8, axis=0)},
+            )
+            self.assertEqual(len(Surface(record).faces), n_faces)
+
     def test_vtk_js_is_that_of_the_lock_file(self):
         folder = SOURCE / "contrib" / "reporting" / "vtk"
         lock = json.loads((folder / "package-lock.json").read_text())["packages"]

@@ -579,8 +579,8 @@ class Triggers(RestartCase):
             self.assertRegex(
                 message,
                 r"'Checkpoint/Wall time limit' has ended the run after the checkpoint "
-                r"of step 1 .*; --restart goes on\. The error up to there is "
-                r"estimated as [0-9.]+ %\.",
+                r"of step 1 .*; --restart goes on\. The error in the energy norm up to "
+                r"there is estimated as [0-9.]+ %\.",
             )
             job.run("--restart", code=3)
             self.assertEqual(job.steps(), [1, 2])

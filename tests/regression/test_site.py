@@ -95,6 +95,12 @@ class Site(TestCase):
         )
         first = browser.run("document.querySelector('#found a').href")
         self.assertEqual(first, f"{self.site.as_uri()}/doc/method.html#normal-compliance")
+        # Wide tables scroll by themselves, not the page.
+        browser.size(1000, 800)
+        browser.open(self.site / "doc" / "results.html")
+        browser.wait("document.readyState === 'complete'")
+        wider = "document.documentElement.scrollWidth - document.documentElement.clientWidth"
+        self.assertEqual(browser.run(wider), 0)
         self.assertEqual(browser.errors, [])
 
 

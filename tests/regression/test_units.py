@@ -299,6 +299,10 @@ class Same(TestCase):
             self.scene.stdout,
             r"von Mises stress +\S+ MPa at t = \S+ day, x = \(.*\) m\n",
         )
+        # What is small has a handy multiple, as in pictures.
+        found = re.search(r"  displacement +(\S+) mm at t", self.scene.stdout)
+        largest = 1e3 * self.scene["max_displacement"].max()
+        self.assertClose(float(found[1]), largest, relative=1e-4)
         for unit in ("day", "MPa", "MN"):
             self.assertNotIn(unit, self.plain.stdout)
         # The record of the run is the scene, word by word, and repeats it.

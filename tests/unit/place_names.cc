@@ -136,6 +136,13 @@ namespace
     EXPECT_EQ(names.of("boundary", 5), "boundary 5");
     EXPECT_EQ(names.of("material", 1), "salt");
     EXPECT_EQ(names.of("material", 4), "pad");
+    expect_refusal(
+      [&] {
+        NamedScene(
+          "subsection Geometry\nset File = " + folder.add("body.msh", mesh) +
+          "\nend\nsubsection Boundary 7\nset Name = pad\nend\n");
+      },
+      "calls boundary 7 'pad', as");
     // Ids that the scene gives anew are none of the file.
     const PlaceNames others = names_of(mesh, "set Boundary ids = id + 1\n");
     EXPECT_FALSE(others.has("boundary", 0));

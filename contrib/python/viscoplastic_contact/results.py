@@ -182,10 +182,25 @@ def read_parameters(path):
     return entries
 
 
+def by_numbers(text, names):
+    """Columns as a scene names their places, "reaction_y of roof" and "stress_xx of
+    crown", as statistics.csv does: reaction_3_y, point0_stress_xx."""
+    # Longer names first: they may contain others.
+    for place, name in sorted(names.items(), key=lambda item: -len(item[1])):
+        kind, number = place.rsplit(" ", 1)
+        of = rf" of {re.escape(name)}(?!\w)"
+        if kind == "boundary":
+            forces = r"\b(reaction|friction_force|contact_force)_([xyz])"
+            text = re.sub(forces + of, rf"\1_{number}_\2", text)
+        elif kind == "point":
+            text = re.sub(rf"\b(?:displacement_)?(\w+){of}", rf"point{number}_\1", text)
+    return text
+
+
 class Results:
     """A directory of results: results["friction_force_x"] is a column of
     statistics.csv, body() and face() are fields. What nobody asks for is not
-    read."""
+    read. Places have their numbers or what the scene calls them."""
 
     def __init__(self, directory):
         directory = Path(directory)
@@ -204,13 +219,15 @@ class Results:
         self.solution = series(solution) if solution.exists() else []
         contact = self.directory / "contact.pvd"
         self.contact = series(contact) if contact.exists() else []
+        # Whether bodies touch each other.
+        self.opposite = (self.directory / "opposite.pvd").exists()
         self.records = {}
 
     def __getitem__(self, name):
         return self.column(name)
 
     def __contains__(self, name):
-        return name in self.statistics
+        return by_numbers(name, self.names) in self.statistics
 
     @property
     def parameters(self):
@@ -252,9 +269,11 @@ class Results:
 
     def vector(self, prefix):
         """The columns prefix_x, prefix_y(, prefix_z) as one array (step, axis);
-        vector("point0") is the displacement of the first of `Output/Points'."""
-        names = [f"{prefix}_{axis}" for axis in "xyz"]
-        found = [name for name in names if name in self.statistics]
+        vector("point0") is the displacement of the first of `Output/Points',
+        vector("reaction of roof") a force."""
+        words, of, place = prefix.partition(" of ")
+        names = [f"{words}_{axis}{of}{place}" for axis in "xyz"]
+        found = [name for name in names if name in self]
         return np.stack([self.column(name) for name in found or names], axis=1)
 
     def lines(self):
@@ -269,12 +288,15 @@ class Results:
         return [line for line in map(read_statistics, paths) if line]
 
     def line(self, number=0):
-        """One of them."""
+        """One of them, by its number or its name."""
         found = self.lines()
-        if not 0 <= number < len(found):
+        places = {name: place for place, name in self.names.items()}
+        kind, _, named = places.get(number, "").partition(" ")
+        number = int(named) if kind == "line" else number
+        if number not in range(len(found)):
             raise NotAvailable(
                 f"{self.directory} has {len(found)} lines ('Output/Lines'), none with "
-                f"the number {number}"
+                f"the number or name {number}"
             )
         return found[number]
 
@@ -354,9 +376,12 @@ class Results:
         return self.parameters.get(("Geometry", "Plane model")) == "axisymmetric"
 
     def column(self, name):
-        if name not in self.statistics:
+        column = by_numbers(name, self.names)
+        if column not in self.statistics:
+            places = f"; places are {', '.join(self.names.values())}" if self.names else ""
             raise UserError(
                 f'statistics.csv has no column "{name}"; it has '
                 + ", ".join(self.statistics)
+                + places
             )
-        return self.statistics[name]
+        return self.statistics[column]

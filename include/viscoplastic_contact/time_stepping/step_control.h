@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
+#include <viscoplastic_contact/base/messages.h>
 #include <viscoplastic_contact/parameters/parameters.h>
 #include <viscoplastic_contact/parameters/time_schedule.h>
 
 #include <algorithm>
+#include <new>
 #include <optional>
 #include <stdexcept>
 #include <string>
@@ -28,6 +30,31 @@ namespace Viscoplastic
   {
     using StepFailure::StepFailure;
   };
+
+
+  /// Call @p work and throw what goes wrong as a failure of step @p n to time
+  /// @p t.
+  template <typename Work>
+  auto
+  as_part_of_step(const unsigned int n, const double t, const Work &work)
+  {
+    try
+      {
+        return work();
+      }
+    catch (const std::bad_alloc &)
+      {
+        throw;
+      }
+    catch (const StepFailure &)
+      {
+        throw; // which names the step
+      }
+    catch (...)
+      {
+        throw StepFailure(n, t, reason_of_current_exception());
+      }
+  }
 
 
   /// The error measures by which a tried step is accepted or rejected.

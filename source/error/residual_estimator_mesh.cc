@@ -43,12 +43,57 @@ namespace Viscoplastic
 
 
 
+  namespace
+  {
+    /// The first of some places nearest to @p x.
+    template <std::size_t n, typename Place>
+    unsigned int
+    nearest(const std::array<Place, n> &places, const Place &x)
+    {
+      unsigned int result = 0;
+      for (unsigned int p = 1; p < n; ++p)
+        if ((places[p] - x).norm() < (places[result] - x).norm())
+          result = p;
+      return result;
+    }
+  } // namespace
+
+
+
+  template <int dim>
+  unsigned int
+  ResidualEstimator<dim>::subface_shape(const Cell           &cell,
+                                        const unsigned int    shape,
+                                        const unsigned int    f,
+                                        const unsigned int    subface,
+                                        FESubfaceValues<dim> &values)
+  {
+    const auto [entry, is_new] =
+      subface_shape_of.emplace(std::make_tuple(shape, f, subface),
+                               subface_shapes.size());
+    if (is_new)
+      {
+        values.reinit(cell, f, subface);
+        subface_shapes.emplace_back();
+        subface_shapes.back().reinit(cell->vertex(0), values, local.has_hoops);
+      }
+    return entry->second;
+  }
+
+
+
   template <int dim>
   void
   ResidualEstimator<dim>::make_faces()
   {
     const AdmissibleSpace<dim> &space = stress_space.space;
-    const FiniteElement<dim>   &fe    = space.dof_handler.get_fe();
+    FESubfaceValues<dim>        on_subface(space.mapping,
+                                    space.dof_handler.get_fe(),
+                                    QGauss<dim - 1>(2),
+                                    update_values | update_gradients |
+                                      update_normal_vectors |
+                                      update_quadrature_points |
+                                      update_JxW_values);
     std::vector<unsigned int>   number(
       space.dof_handler.get_triangulation().n_active_cells());
     for (unsigned int c = 0; c < cells.size(); ++c)
@@ -60,14 +105,6 @@ namespace Viscoplastic
                                 const unsigned int face) {
       return (cell * n_faces + face) * n_face_points;
     };
-    FESubfaceValues<dim> on_subface(space.mapping,
-                                    fe,
-                                    QGauss<dim - 1>(2),
-                                    update_values | update_gradients |
-                                      update_normal_vectors |
-                                      update_quadrature_points |
-                                      update_JxW_values);
-
     // @p side: the shape of the second cell's (sub)face.
     const auto add_face = [&](const Cell        &fine,
                               const unsigned int f,
@@ -82,19 +119,7 @@ namespace Viscoplastic
       const FaceShape   &here  = shapes[cells[c].shape].faces[f];
       const auto         shift = other->vertex(0) - fine->vertex(0);
       for (unsigned int q = 0; q < n_face_points; ++q)
-        {
-          double nearest = std::numeric_limits<double>::max();
-          for (unsigned int p = 0; p < n_face_points; ++p)
-            {
-              const double distance =
-                (side.positions[p] + shift - here.positions[q]).norm();
-              if (distance < nearest)
-                {
-                  nearest         = distance;
-                  face.partner[q] = p;
-                }
-            }
-        }
+        face.partner[q] = nearest(side.positions, here.positions[q] - shift);
       interior_faces.push_back(face);
     };
 
@@ -103,25 +128,16 @@ namespace Viscoplastic
                                  const Cell        &coarse,
                                  const unsigned int f,
                                  const unsigned int subface) {
-      const unsigned int c = number_of(coarse);
-      const auto [entry, is_new] =
-        subface_shape_of.emplace(std::make_tuple(cells[c].shape, f, subface),
-                                 subface_shapes.size());
-      if (is_new)
-        {
-          on_subface.reinit(coarse, f, subface);
-          subface_shapes.emplace_back();
-          subface_shapes.back().reinit(coarse->vertex(0),
-                                       on_subface,
-                                       local.has_hoops);
-        }
+      const unsigned int c     = number_of(coarse),
+                         shape = subface_shape(
+                           coarse, cells[c].shape, f, subface, on_subface);
       add_face(fine,
                fine_f,
                coarse,
-               subface_shapes[entry->second],
+               subface_shapes[shape],
                traction_of(cells.size(), 0) +
                  subface_sides.size() * n_face_points);
-      subface_sides.push_back({c, entry->second});
+      subface_sides.push_back({c, shape});
     };
 
     // Faces between owned cells are visited once: from the finer side, or from

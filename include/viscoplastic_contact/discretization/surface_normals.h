@@ -45,6 +45,11 @@ namespace Viscoplastic
     reach(const SurfaceFace<dim> &face);
 
   private:
+    /// Set normals and lifts of the hanging nodes among some. Collective.
+    void
+    lift(const std::map<types::global_dof_index, Point<dim>> &positions,
+         const AffineConstraints<double>                     &hanging_nodes);
+
     LinearAlgebra::distributed::Vector<double> normals, lifts;
   };
 

@@ -224,6 +224,14 @@ namespace Viscoplastic
     void
     compare_with_manifold();
 
+    /// The number of the shape of a part of the face @p f of a cell.
+    unsigned int
+    subface_shape(const Cell           &cell,
+                  const unsigned int    shape,
+                  const unsigned int    f,
+                  const unsigned int    subface,
+                  FESubfaceValues<dim> &values);
+
     /// Face @p f of a cell with this number.
     void
     add_boundary_face(const Cell                   &cell,

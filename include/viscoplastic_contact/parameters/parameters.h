@@ -147,6 +147,10 @@ namespace Viscoplastic
 
     void
     declare(ParameterHandler &prm);
+
+    /// The entries of the role contact.
+    void
+    declare_contact(ParameterHandler &prm);
   };
 
   struct TimeParameters

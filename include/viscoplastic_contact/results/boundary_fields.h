@@ -87,6 +87,10 @@ namespace Viscoplastic
         double                   *values) const;
 
   private:
+    /// The mean of sigma n in an owned cell.
+    Tensor<1, dim>
+    stress_vector(const std::size_t cell, const Tensor<1, dim> &normal) const;
+
     void
     make_fields(const ContactFace<dim> *face);
     /// Make the fields on the other sides of those at the nodes of Gamma_3.

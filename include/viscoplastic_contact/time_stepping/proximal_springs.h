@@ -78,6 +78,25 @@ namespace Viscoplastic
           const HeldBody          &body,
           const DistributedVector &right_side) const;
 
+    /// What springs hold after a solve: their energy norm, that of the
+    /// solution, and whether it is no more than the loads balance.
+    struct Held
+    {
+      double in_springs, size;
+      bool   in_balance;
+    };
+
+    /// Add what they hold of @p change, the last one of @p u, to the error of
+    /// @p report; @p whole: how far the body was before. Collective.
+    Held
+    measure(const StepProblem<dim>  &problem,
+            const DistributedVector &right_side,
+            const double             tolerance,
+            const DistributedVector &u,
+            const DistributedVector &change,
+            const DistributedVector &whole,
+            ContactReport           &report) const;
+
     /// Move u and the rest of the springs as a whole to where the loads are in
     /// balance with soft ground. Collective.
     void

@@ -30,13 +30,13 @@ namespace Viscoplastic
   std::string
   pack_mesh(const parallel::distributed::Triangulation<dim> &triangulation);
 
-  /// The inverse. Throws ExcMessage if these are no cells of a mesh with
-  /// @p n_coarse_cells.
+  /// The cells that pack_mesh() has packed. Throws ExcMessage if they are none
+  /// of a mesh with @p n_coarse_cells.
   template <int dim>
   std::vector<CellId>
   unpack_mesh(const std::string &bytes, const unsigned int n_coarse_cells);
 
-  /// Throws ExcMessage: what has been packed is damaged, or of another mesh.
+  /// Throws ExcMessage if false: the checkpoint is damaged or of another mesh.
   void
   require_sense(const bool condition);
 

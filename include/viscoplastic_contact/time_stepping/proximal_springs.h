@@ -26,7 +26,7 @@ namespace Viscoplastic
     const DistributedMatrix &
     attach(const DistributedMatrix &matrix);
 
-    /// Add the load of springs that carry nothing at @p u.
+    /// Add to a load that of springs which are relaxed at @p u.
     void
     add_load(const DistributedVector &u, DistributedVector &load) const
     {
@@ -71,8 +71,8 @@ namespace Viscoplastic
     HeldBody
     held_body(const StepProblem<dim> &problem) const;
 
-    /// Whether nothing moves a body: neither loads nor a foundation, and the
-    /// forces of contact were rounding. Collective.
+    /// Whether neither loads nor a foundation do work on a rigid motion, and
+    /// old contact forces were rounding. Collective.
     bool
     rests(const StepProblem<dim>  &problem,
           const HeldBody          &body,
@@ -147,8 +147,8 @@ namespace Viscoplastic
     /// The rigid motions that only contact can prevent.
     const std::vector<DistributedVector> motions;
     std::vector<DistributedVector>       orthonormal_motions;
-    /// As many components of contact nodes as that, which can hold the body:
-    /// positions among the owned degrees of freedom.
+    /// Where springs act: components of contact nodes, as many as motions, that
+    /// constrain these; positions among the owned degrees of freedom.
     std::vector<unsigned int> supports;
     const DistributedMatrix  *singular_matrix = nullptr;
     DistributedMatrix         regular_matrix;

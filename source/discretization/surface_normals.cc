@@ -235,6 +235,5 @@ namespace Viscoplastic
 
 
 
-  template class SurfaceNormals<2>;
-  template class SurfaceNormals<3>;
+  VISCOPLASTIC_INSTANTIATE_CLASS(SurfaceNormals);
 } // namespace Viscoplastic

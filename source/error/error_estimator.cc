@@ -200,6 +200,5 @@ namespace Viscoplastic
 
 
 
-  template class ErrorEstimator<2>;
-  template class ErrorEstimator<3>;
+  VISCOPLASTIC_INSTANTIATE_CLASS(ErrorEstimator);
 } // namespace Viscoplastic

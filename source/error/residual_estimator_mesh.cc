@@ -15,7 +15,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 // What ResidualEstimator keeps of a mesh; how it uses that is in
 // residual_estimator.cc.
@@ -62,14 +61,14 @@ namespace Viscoplastic
 
   template <int dim>
   unsigned int
-  ResidualEstimator<dim>::subface_shape(const Cell           &cell,
-                                        const unsigned int    shape,
-                                        const unsigned int    f,
-                                        const unsigned int    subface,
-                                        FESubfaceValues<dim> &values)
+  ResidualEstimator<dim>::add_subface_side(const Cell           &cell,
+                                           const unsigned int    number,
+                                           const unsigned int    f,
+                                           const unsigned int    subface,
+                                           FESubfaceValues<dim> &values)
   {
     const auto [entry, is_new] =
-      subface_shape_of.emplace(std::make_tuple(shape, f, subface),
+      subface_shape_of.emplace(std::make_tuple(cells[number].shape, f, subface),
                                subface_shapes.size());
     if (is_new)
       {
@@ -77,6 +76,7 @@ namespace Viscoplastic
         subface_shapes.emplace_back();
         subface_shapes.back().reinit(cell->vertex(0), values, local.has_hoops);
       }
+    subface_sides.push_back({number, entry->second});
     return entry->second;
   }
 
@@ -128,16 +128,11 @@ namespace Viscoplastic
                                  const Cell        &coarse,
                                  const unsigned int f,
                                  const unsigned int subface) {
-      const unsigned int c     = number_of(coarse),
-                         shape = subface_shape(
-                           coarse, cells[c].shape, f, subface, on_subface);
-      add_face(fine,
-               fine_f,
-               coarse,
-               subface_shapes[shape],
-               traction_of(cells.size(), 0) +
-                 subface_sides.size() * n_face_points);
-      subface_sides.push_back({c, shape});
+      const unsigned int traction =
+        traction_of(cells.size(), 0) + subface_sides.size() * n_face_points;
+      const unsigned int shape =
+        add_subface_side(coarse, number_of(coarse), f, subface, on_subface);
+      add_face(fine, fine_f, coarse, subface_shapes[shape], traction);
     };
 
     // Faces between owned cells are visited once: from the finer side, or from
@@ -156,15 +151,12 @@ namespace Viscoplastic
               add_boundary_face(cell, f, number_of(cell), condition);
             }
           else if (cell->face(f)->has_children())
-            {
-              for (unsigned int s = 0; s < cell->face(f)->n_children(); ++s)
-                {
-                  const Cell child = cell->neighbor_child_on_subface(f, s);
-                  if (!child->is_locally_owned())
-                    add_subface(
-                      child, cell->neighbor_of_neighbor(f), cell, f, s);
-                }
-            }
+            for (unsigned int s = 0; s < cell->face(f)->n_children(); ++s)
+              {
+                const Cell child = cell->neighbor_child_on_subface(f, s);
+                if (!child->is_locally_owned())
+                  add_subface(child, cell->neighbor_of_neighbor(f), cell, f, s);
+              }
           else if (cell->neighbor_is_coarser(f))
             {
               const auto [neighbor_f, subface] =
@@ -496,6 +488,5 @@ namespace Viscoplastic
 
 
 
-  template class ResidualEstimator<2>;
-  template class ResidualEstimator<3>;
+  VISCOPLASTIC_INSTANTIATE_CLASS(ResidualEstimator);
 } // namespace Viscoplastic

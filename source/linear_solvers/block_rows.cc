@@ -281,16 +281,11 @@ namespace Viscoplastic
     rows.values.assign(values.begin(), values.begin() + rows.begin.back());
     if (Utilities::MPI::n_mpi_processes(communicator) == 1)
       return rows;
-
     std::map<unsigned int, std::vector<Entry<dim>>> to_send;
     for (unsigned int I = n_owned; I < coarse.size(); ++I)
-      {
-        const unsigned int owner =
-          std::upper_bound(begins.begin(), begins.end(), coarse[I]) -
-          begins.begin() - 1;
-        for (std::size_t e = row_begin[I]; e < row_begin[I + 1]; ++e)
-          to_send[owner].push_back({coarse[I], coarse[columns[e]], values[e]});
-      }
+      for (std::size_t e = row_begin[I]; e < row_begin[I + 1]; ++e)
+        to_send[owner_of(coarse[I], begins)].push_back(
+          {coarse[I], coarse[columns[e]], values[e]});
     return exchange(rows, to_send, number, communicator);
   }
 

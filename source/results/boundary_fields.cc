@@ -333,6 +333,5 @@ namespace Viscoplastic
 
 
 
-  template class BoundaryFields<2>;
-  template class BoundaryFields<3>;
+  VISCOPLASTIC_INSTANTIATE_CLASS(BoundaryFields);
 } // namespace Viscoplastic

@@ -472,6 +472,5 @@ namespace Viscoplastic
 
 
 
-  template class ProximalSprings<2>;
-  template class ProximalSprings<3>;
+  VISCOPLASTIC_INSTANTIATE_CLASS(ProximalSprings);
 } // namespace Viscoplastic

@@ -368,6 +368,5 @@ namespace Viscoplastic
 
 
 
-  template class TimeStepper<2>;
-  template class TimeStepper<3>;
+  VISCOPLASTIC_INSTANTIATE_CLASS(TimeStepper);
 } // namespace Viscoplastic

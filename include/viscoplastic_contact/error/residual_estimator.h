@@ -224,13 +224,14 @@ namespace Viscoplastic
     void
     compare_with_manifold();
 
-    /// The number of the shape of a part of the face @p f of a cell.
+    /// Add a part of the face @p f of a cell with this number. Returns the
+    /// number of its shape.
     unsigned int
-    subface_shape(const Cell           &cell,
-                  const unsigned int    shape,
-                  const unsigned int    f,
-                  const unsigned int    subface,
-                  FESubfaceValues<dim> &values);
+    add_subface_side(const Cell           &cell,
+                     const unsigned int    number,
+                     const unsigned int    f,
+                     const unsigned int    subface,
+                     FESubfaceValues<dim> &values);
 
     /// Face @p f of a cell with this number.
     void

@@ -406,10 +406,8 @@ namespace Viscoplastic
 
 
   template class Expression<1>;
-  template class Expression<2>;
-  template class Expression<3>;
-  template class VectorExpression<2>;
-  template class VectorExpression<3>;
+  VISCOPLASTIC_INSTANTIATE_CLASS(Expression);
+  VISCOPLASTIC_INSTANTIATE_CLASS(VectorExpression);
   VISCOPLASTIC_INSTANTIATE(parse_expression);
   VISCOPLASTIC_INSTANTIATE(parse_point);
   VISCOPLASTIC_INSTANTIATE(optional_vector);

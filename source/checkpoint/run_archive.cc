@@ -421,7 +421,6 @@ namespace Viscoplastic
 
 
 
-  template class RunArchive<2>;
-  template class RunArchive<3>;
+  VISCOPLASTIC_INSTANTIATE_CLASS(RunArchive);
   VISCOPLASTIC_INSTANTIATE(pack_run);
 } // namespace Viscoplastic

@@ -489,7 +489,6 @@ namespace Viscoplastic
 
 
 
-  template class AdmissibleSpace<2>;
-  template class AdmissibleSpace<3>;
+  VISCOPLASTIC_INSTANTIATE_CLASS(AdmissibleSpace);
   VISCOPLASTIC_INSTANTIATE(distribute_nodes);
 } // namespace Viscoplastic

@@ -3,6 +3,50 @@
 
 namespace Viscoplastic
 {
+  namespace
+  {
+    /// Call act(cell, boundary id, number of the node) for owned nodes of faces
+    /// at the boundary, but those that hang.
+    template <int dim, typename Action>
+    void
+    for_each_boundary_node(const DoFHandler<dim>           &dof_handler,
+                           const AffineConstraints<double> &hanging_nodes,
+                           const Action                    &act)
+    {
+      const IndexSet &owned = dof_handler.locally_owned_dofs();
+      for (const auto &cell : dof_handler.active_cell_iterators())
+        if (!cell->is_artificial())
+          for (const unsigned int f : cell->face_indices())
+            if (cell->face(f)->at_boundary())
+              for (const unsigned int v : cell->face(f)->vertex_indices())
+                if (const auto dof = cell->face(f)->vertex_dof_index(v, 0);
+                    owned.is_element(dof) && !hanging_nodes.is_constrained(dof))
+                  act(cell,
+                      cell->face(f)->boundary_id(),
+                      owned.index_within_set(dof) / dim);
+    }
+
+
+
+    /// For each owned node, whether it belongs to a material that is present.
+    template <int dim>
+    std::vector<bool>
+    nodes_of_body(const DoFHandler<dim> &dof_handler, const Scene<dim> &scene)
+    {
+      const IndexSet   &owned = dof_handler.locally_owned_dofs();
+      std::vector<bool> result(owned.n_elements() / dim, false);
+      for (const auto &cell : dof_handler.active_cell_iterators())
+        if (!cell->is_artificial() && scene.is_present(cell->material_id()))
+          for (const unsigned int v : cell->vertex_indices())
+            if (const auto dof = cell->vertex_dof_index(v, 0);
+                owned.is_element(dof))
+              result[owned.index_within_set(dof) / dim] = true;
+      return result;
+    }
+  } // namespace
+
+
+
   template <int dim>
   ConditionsAtNodes<dim>
   conditions_at_nodes(
@@ -27,16 +71,10 @@ namespace Viscoplastic
 
     // What holds an absent material does not hold the nodes that it shares with
     // the body.
-    std::vector<bool> is_of_body(scene.has_stages() ? node_position.size() : 0,
-                                 false);
-    if (scene.has_stages())
-      for (const auto &cell : dof_handler.active_cell_iterators())
-        if (!cell->is_artificial() && scene.is_present(cell->material_id()))
-          for (const unsigned int v : cell->vertex_indices())
-            if (const auto dof = cell->vertex_dof_index(v, 0);
-                owned.is_element(dof))
-              is_of_body[owned.index_within_set(dof) / dim] = true;
-    const auto is_contact = [&](const types::boundary_id id) {
+    const std::vector<bool> is_of_body = scene.has_stages() ?
+                                           nodes_of_body(dof_handler, scene) :
+                                           std::vector<bool>();
+    const auto              is_contact = [&](const types::boundary_id id) {
       return scene.boundary.at(id).role == BoundaryRole::contact;
     };
     std::vector<bool> waits(
@@ -58,23 +96,16 @@ namespace Viscoplastic
     const auto boundaries_of_nodes =
       [&](const std::vector<types::boundary_id> &ids) {
         std::vector<std::uint64_t> result(node_position.size(), 0);
-        for (const auto &cell : dof_handler.active_cell_iterators())
-          if (!cell->is_artificial())
-            for (const unsigned int f : cell->face_indices())
-              if (cell->face(f)->at_boundary())
-                for (unsigned int i = 0; i < ids.size(); ++i)
-                  if (ids[i] == cell->face(f)->boundary_id())
-                    for (const unsigned int v : cell->face(f)->vertex_indices())
-                      {
-                        const auto dof = cell->face(f)->vertex_dof_index(v, 0);
-                        if (owned.is_element(dof) &&
-                            !hanging_nodes.is_constrained(dof) &&
-                            !is_released(cell,
-                                         ids[i],
-                                         owned.index_within_set(dof) / dim))
-                          result[owned.index_within_set(dof) / dim] |=
-                            std::uint64_t(1) << i;
-                      }
+        for_each_boundary_node(dof_handler,
+                               hanging_nodes,
+                               [&](const auto              &cell,
+                                   const types::boundary_id id,
+                                   const std::size_t        node) {
+                                 for (unsigned int i = 0; i < ids.size(); ++i)
+                                   if (ids[i] == id &&
+                                       !is_released(cell, id, node))
+                                     result[node] |= std::uint64_t(1) << i;
+                               });
         return result;
       };
     std::vector<types::boundary_id> ids;

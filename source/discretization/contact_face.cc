@@ -417,6 +417,5 @@ namespace Viscoplastic
 
 
 
-  template class ContactFace<2>;
-  template class ContactFace<3>;
+  VISCOPLASTIC_INSTANTIATE_CLASS(ContactFace);
 } // namespace Viscoplastic

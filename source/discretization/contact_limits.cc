@@ -136,8 +136,6 @@ namespace Viscoplastic
 
 
 
-  template class ContactTension<2>;
-  template class ContactTension<3>;
-  template class InterfaceSlide<2>;
-  template class InterfaceSlide<3>;
+  VISCOPLASTIC_INSTANTIATE_CLASS(ContactTension);
+  VISCOPLASTIC_INSTANTIATE_CLASS(InterfaceSlide);
 } // namespace Viscoplastic

@@ -151,8 +151,7 @@ namespace Viscoplastic
 
 
 
-  template class Discretization<2>;
-  template class Discretization<3>;
+  VISCOPLASTIC_INSTANTIATE_CLASS(Discretization);
   VISCOPLASTIC_INSTANTIATE(may_lock);
   VISCOPLASTIC_INSTANTIATE(uses_mean_dilatation);
 } // namespace Viscoplastic

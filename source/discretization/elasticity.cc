@@ -148,8 +148,7 @@ namespace Viscoplastic
 
 
 
-  template class ElasticModuli<2>;
-  template class ElasticModuli<3>;
+  VISCOPLASTIC_INSTANTIATE_CLASS(ElasticModuli);
   VISCOPLASTIC_INSTANTIATE(elastic_cell_matrix);
   VISCOPLASTIC_INSTANTIATE(assemble_elastic_matrix);
 } // namespace Viscoplastic

@@ -480,8 +480,7 @@ namespace Viscoplastic
 
 
 
-  template class FlowLaws<2>;
-  template class FlowLaws<3>;
+  VISCOPLASTIC_INSTANTIATE_CLASS(FlowLaws);
   VISCOPLASTIC_INSTANTIATE(evaluate_flow);
   VISCOPLASTIC_INSTANTIATE(advance_history);
   VISCOPLASTIC_INSTANTIATE(implicit_irreversible_stress);

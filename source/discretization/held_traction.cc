@@ -136,7 +136,6 @@ namespace Viscoplastic
 
 
 
-  template class HeldTraction<2>;
-  template class HeldTraction<3>;
+  VISCOPLASTIC_INSTANTIATE_CLASS(HeldTraction);
   VISCOPLASTIC_INSTANTIATE(boundary_weights);
 } // namespace Viscoplastic

@@ -145,6 +145,5 @@ namespace Viscoplastic
 
 
 
-  template class Loads<2>;
-  template class Loads<3>;
+  VISCOPLASTIC_INSTANTIATE_CLASS(Loads);
 } // namespace Viscoplastic

@@ -31,6 +31,5 @@ namespace Viscoplastic
 
 
 
-  template class PointProbe<2>;
-  template class PointProbe<3>;
+  VISCOPLASTIC_INSTANTIATE_CLASS(PointProbe);
 } // namespace Viscoplastic

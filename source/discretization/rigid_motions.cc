@@ -165,6 +165,32 @@ namespace Viscoplastic
 
 
 
+    /// What the displacement of a place along a direction sees of the rigid
+    /// motions of the parts of a body.
+    template <int dim>
+    struct MotionsOfPlace
+    {
+      /// Whether parts that see each other are looked at together.
+      const bool       are_coupled;
+      const Point<dim> center;
+      const double     radius;
+
+      void
+      add_to(RigidMotion          &row,
+             const unsigned int    part,
+             const Point<dim>     &position,
+             const Tensor<1, dim> &direction) const
+      {
+        const auto motions =
+          rigid_displacements<dim>((position - center) / radius);
+        for (unsigned int a = 0; a < motions.size(); ++a)
+          row[(are_coupled ? part * motions.size() : 0) + a] =
+            motions[a] * direction;
+      }
+    };
+
+
+
     /// A ring resists all of its plane motions but that along its axis.
     void
     resist_as_ring(SeenMotions &seen, const unsigned int n_motions)
@@ -236,11 +262,10 @@ namespace Viscoplastic
   void
   AdmissibleSpace<dim>::check_rigid_motions()
   {
-    constexpr unsigned int n_motions   = n_rigid_motions<dim>;
-    const BodyParts        parts       = find_parts(*this);
-    const bool             are_coupled = scene.has_contact_pairs();
-    // Parts that see each other are looked at together.
-    const unsigned int n_together = (are_coupled ? parts.n : 1) * n_motions;
+    const BodyParts    parts       = find_parts(*this);
+    const bool         are_coupled = scene.has_contact_pairs();
+    const unsigned int n_together =
+      (are_coupled ? parts.n : 1) * n_rigid_motions<dim>;
     std::vector<SeenMotions> seen(are_coupled ? 1 : parts.n,
                                   SeenMotions(n_together));
     const auto group = [&](const unsigned int part) {
@@ -252,34 +277,24 @@ namespace Viscoplastic
     for (const auto &x : node_position)
       radius = std::max(radius, x.distance(center));
     radius = Utilities::MPI::max(radius, communicator);
-
-    // What the displacement of a place along a direction sees of the motions.
-    const auto set_part = [&](RigidMotion          &row,
-                              const unsigned int    part,
-                              const Point<dim>     &position,
-                              const Tensor<1, dim> &direction) {
-      const auto motions =
-        rigid_displacements<dim>((position - center) / radius);
-      for (unsigned int a = 0; a < n_motions; ++a)
-        row[(are_coupled ? part * n_motions : 0) + a] = motions[a] * direction;
-    };
-    // That of a boundary node, relative to the body opposite if there is one.
+    const MotionsOfPlace<dim> motions_of{are_coupled, center, radius};
+    // Of a boundary node, relative to the body opposite if there is one.
     const auto add_row_of_node = [&](SeenMotions          &to,
                                      const unsigned int    part,
                                      const BoundaryNode   &node,
                                      const Tensor<1, dim> &direction) {
       RigidMotion row(n_together, 0.);
-      set_part(row, part, node.position, direction);
+      motions_of.add_to(row, part, node.position, direction);
       if (const auto of_node =
             couplings_of_node.find(relevant.index_within_set(node.first_dof));
           of_node != couplings_of_node.end())
         {
           const Coupling &coupling = couplings[of_node->second[0].first];
-          set_part(row,
-                   static_cast<unsigned int>(
-                     part_numbers.begin()[coupling.others[0].first]),
-                   coupling.opposite,
-                   -(coupling.projector * direction));
+          motions_of.add_to(row,
+                            static_cast<unsigned int>(
+                              part_numbers.begin()[coupling.others[0].first]),
+                            coupling.opposite,
+                            -(coupling.projector * direction));
         }
       to.add(row);
     };
@@ -309,7 +324,7 @@ namespace Viscoplastic
                             const Point<dim>     &x,
                             const Tensor<1, dim> &direction) {
                           RigidMotion row(n_together, 0.);
-                          set_part(row, part, x, direction);
+                          motions_of.add_to(row, part, x, direction);
                           seen[group(part)].add(row);
                         });
       }

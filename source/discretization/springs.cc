@@ -127,6 +127,5 @@ namespace Viscoplastic
 
 
 
-  template class Springs<2>;
-  template class Springs<3>;
+  VISCOPLASTIC_INSTANTIATE_CLASS(Springs);
 } // namespace Viscoplastic

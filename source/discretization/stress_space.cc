@@ -300,7 +300,6 @@ namespace Viscoplastic
 
 
 
-  template class StressSpace<2>;
-  template class StressSpace<3>;
+  VISCOPLASTIC_INSTANTIATE_CLASS(StressSpace);
   VISCOPLASTIC_INSTANTIATE(add_irreversible_load);
 } // namespace Viscoplastic

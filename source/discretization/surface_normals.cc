@@ -77,6 +77,34 @@ namespace Viscoplastic
 
 
   template <int dim>
+  void
+  SurfaceNormals<dim>::lift(
+    const std::map<types::global_dof_index, Point<dim>> &positions,
+    const AffineConstraints<double>                     &hanging_nodes)
+  {
+    lifts.zero_out_ghost_values();
+    for (const auto &[dof, x] : positions)
+      if (normals.in_local_range(dof) && hanging_nodes.is_constrained(dof))
+        {
+          Tensor<1, dim> normal, lift;
+          for (const auto &[parent, weight] :
+               *hanging_nodes.get_constraint_entries(dof))
+            {
+              const Tensor<1, dim> there = at(parent);
+              normal += weight * there;
+              lift -=
+                0.5 * weight * ((x - positions.at(parent)) * there) * there;
+            }
+          set_nodal_value(normalized(normal), dof, normals);
+          set_nodal_value(lift, dof, lifts);
+        }
+    normals.update_ghost_values();
+    lifts.update_ghost_values();
+  }
+
+
+
+  template <int dim>
   SurfaceNormals<dim>::SurfaceNormals(
     const DoFHandler<dim>           &dof_handler,
     const AffineConstraints<double> &hanging_nodes,
@@ -158,26 +186,8 @@ namespace Viscoplastic
               set_nodal_value(normalized(normal), dof, normals);
             }
         normals.update_ghost_values();
-        if (!any_hanging)
-          break;
-        lifts.zero_out_ghost_values();
-        for (const auto &[dof, x] : positions)
-          if (owned.is_element(dof) && hanging_nodes.is_constrained(dof))
-            {
-              Tensor<1, dim> normal, lift;
-              for (const auto &[parent, weight] :
-                   *hanging_nodes.get_constraint_entries(dof))
-                {
-                  const Tensor<1, dim> there = at(parent);
-                  normal += weight * there;
-                  lift -=
-                    0.5 * weight * ((x - positions.at(parent)) * there) * there;
-                }
-              set_nodal_value(normalized(normal), dof, normals);
-              set_nodal_value(lift, dof, lifts);
-            }
-        normals.update_ghost_values();
-        lifts.update_ghost_values();
+        if (any_hanging)
+          lift(positions, hanging_nodes);
       }
   }
 
@@ -225,6 +235,5 @@ namespace Viscoplastic
 
 
 
-  template class SurfaceNormals<2>;
-  template class SurfaceNormals<3>;
+  VISCOPLASTIC_INSTANTIATE_CLASS(SurfaceNormals);
 } // namespace Viscoplastic

@@ -217,6 +217,5 @@ namespace Viscoplastic
 
 
 
-  template class TangentMatrix<2>;
-  template class TangentMatrix<3>;
+  VISCOPLASTIC_INSTANTIATE_CLASS(TangentMatrix);
 } // namespace Viscoplastic

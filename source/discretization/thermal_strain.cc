@@ -193,7 +193,6 @@ namespace Viscoplastic
 
 
 
-  template class ThermalStrain<2>;
-  template class ThermalStrain<3>;
+  VISCOPLASTIC_INSTANTIATE_CLASS(ThermalStrain);
   VISCOPLASTIC_INSTANTIATE(without_thermal_stress);
 } // namespace Viscoplastic

@@ -289,6 +289,5 @@ namespace Viscoplastic
 
 
 
-  template class BoundaryDefects<2>;
-  template class BoundaryDefects<3>;
+  VISCOPLASTIC_INSTANTIATE_CLASS(BoundaryDefects);
 } // namespace Viscoplastic

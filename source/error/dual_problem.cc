@@ -491,6 +491,5 @@ namespace Viscoplastic
 
 
 
-  template class DualProblem<2>;
-  template class DualProblem<3>;
+  VISCOPLASTIC_INSTANTIATE_CLASS(DualProblem);
 } // namespace Viscoplastic

@@ -119,6 +119,5 @@ namespace Viscoplastic
 
 
 
-  template class KnownSolution<2>;
-  template class KnownSolution<3>;
+  VISCOPLASTIC_INSTANTIATE_CLASS(KnownSolution);
 } // namespace Viscoplastic

@@ -234,6 +234,5 @@ namespace Viscoplastic
 
 
 
-  template class LocalCells<2>;
-  template class LocalCells<3>;
+  VISCOPLASTIC_INSTANTIATE_CLASS(LocalCells);
 } // namespace Viscoplastic

@@ -266,6 +266,5 @@ namespace Viscoplastic
 
 
 
-  template class MeshController<2>;
-  template class MeshController<3>;
+  VISCOPLASTIC_INSTANTIATE_CLASS(MeshController);
 } // namespace Viscoplastic

@@ -574,6 +574,5 @@ namespace Viscoplastic
 
 
 
-  template class QuantityEstimator<2>;
-  template class QuantityEstimator<3>;
+  VISCOPLASTIC_INSTANTIATE_CLASS(QuantityEstimator);
 } // namespace Viscoplastic

@@ -617,6 +617,5 @@ namespace Viscoplastic
 
 
 
-  template class RecoveryEstimator<2>;
-  template class RecoveryEstimator<3>;
+  VISCOPLASTIC_INSTANTIATE_CLASS(RecoveryEstimator);
 } // namespace Viscoplastic

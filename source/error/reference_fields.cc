@@ -413,8 +413,7 @@ namespace Viscoplastic
 
 
 
-  template struct FieldSamples<2>;
-  template struct FieldSamples<3>;
+  VISCOPLASTIC_INSTANTIATE_CLASS(FieldSamples);
   VISCOPLASTIC_INSTANTIATE(sample_fields);
   VISCOPLASTIC_INSTANTIATE(write_samples);
   VISCOPLASTIC_INSTANTIATE(read_samples);

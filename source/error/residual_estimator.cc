@@ -515,6 +515,5 @@ namespace Viscoplastic
 
 
 
-  template class ResidualEstimator<2>;
-  template class ResidualEstimator<3>;
+  VISCOPLASTIC_INSTANTIATE_CLASS(ResidualEstimator);
 } // namespace Viscoplastic

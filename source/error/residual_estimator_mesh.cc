@@ -15,7 +15,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 // What ResidualEstimator keeps of a mesh; how it uses that is in
 // residual_estimator.cc.
@@ -43,12 +42,58 @@ namespace Viscoplastic
 
 
 
+  namespace
+  {
+    /// The first of some places nearest to @p x.
+    template <std::size_t n, typename Place>
+    unsigned int
+    nearest(const std::array<Place, n> &places, const Place &x)
+    {
+      unsigned int result = 0;
+      for (unsigned int p = 1; p < n; ++p)
+        if ((places[p] - x).norm() < (places[result] - x).norm())
+          result = p;
+      return result;
+    }
+  } // namespace
+
+
+
+  template <int dim>
+  unsigned int
+  ResidualEstimator<dim>::add_subface_side(const Cell           &cell,
+                                           const unsigned int    number,
+                                           const unsigned int    f,
+                                           const unsigned int    subface,
+                                           FESubfaceValues<dim> &values)
+  {
+    const auto [entry, is_new] =
+      subface_shape_of.emplace(std::make_tuple(cells[number].shape, f, subface),
+                               subface_shapes.size());
+    if (is_new)
+      {
+        values.reinit(cell, f, subface);
+        subface_shapes.emplace_back();
+        subface_shapes.back().reinit(cell->vertex(0), values, local.has_hoops);
+      }
+    subface_sides.push_back({number, entry->second});
+    return entry->second;
+  }
+
+
+
   template <int dim>
   void
   ResidualEstimator<dim>::make_faces()
   {
     const AdmissibleSpace<dim> &space = stress_space.space;
-    const FiniteElement<dim>   &fe    = space.dof_handler.get_fe();
+    FESubfaceValues<dim>        on_subface(space.mapping,
+                                    space.dof_handler.get_fe(),
+                                    QGauss<dim - 1>(2),
+                                    update_values | update_gradients |
+                                      update_normal_vectors |
+                                      update_quadrature_points |
+                                      update_JxW_values);
     std::vector<unsigned int>   number(
       space.dof_handler.get_triangulation().n_active_cells());
     for (unsigned int c = 0; c < cells.size(); ++c)
@@ -60,14 +105,6 @@ namespace Viscoplastic
                                 const unsigned int face) {
       return (cell * n_faces + face) * n_face_points;
     };
-    FESubfaceValues<dim> on_subface(space.mapping,
-                                    fe,
-                                    QGauss<dim - 1>(2),
-                                    update_values | update_gradients |
-                                      update_normal_vectors |
-                                      update_quadrature_points |
-                                      update_JxW_values);
-
     // @p side: the shape of the second cell's (sub)face.
     const auto add_face = [&](const Cell        &fine,
                               const unsigned int f,
@@ -82,19 +119,7 @@ namespace Viscoplastic
       const FaceShape   &here  = shapes[cells[c].shape].faces[f];
       const auto         shift = other->vertex(0) - fine->vertex(0);
       for (unsigned int q = 0; q < n_face_points; ++q)
-        {
-          double nearest = std::numeric_limits<double>::max();
-          for (unsigned int p = 0; p < n_face_points; ++p)
-            {
-              const double distance =
-                (side.positions[p] + shift - here.positions[q]).norm();
-              if (distance < nearest)
-                {
-                  nearest         = distance;
-                  face.partner[q] = p;
-                }
-            }
-        }
+        face.partner[q] = nearest(side.positions, here.positions[q] - shift);
       interior_faces.push_back(face);
     };
 
@@ -103,25 +128,11 @@ namespace Viscoplastic
                                  const Cell        &coarse,
                                  const unsigned int f,
                                  const unsigned int subface) {
-      const unsigned int c = number_of(coarse);
-      const auto [entry, is_new] =
-        subface_shape_of.emplace(std::make_tuple(cells[c].shape, f, subface),
-                                 subface_shapes.size());
-      if (is_new)
-        {
-          on_subface.reinit(coarse, f, subface);
-          subface_shapes.emplace_back();
-          subface_shapes.back().reinit(coarse->vertex(0),
-                                       on_subface,
-                                       local.has_hoops);
-        }
-      add_face(fine,
-               fine_f,
-               coarse,
-               subface_shapes[entry->second],
-               traction_of(cells.size(), 0) +
-                 subface_sides.size() * n_face_points);
-      subface_sides.push_back({c, entry->second});
+      const unsigned int traction =
+        traction_of(cells.size(), 0) + subface_sides.size() * n_face_points;
+      const unsigned int shape =
+        add_subface_side(coarse, number_of(coarse), f, subface, on_subface);
+      add_face(fine, fine_f, coarse, subface_shapes[shape], traction);
     };
 
     // Faces between owned cells are visited once: from the finer side, or from
@@ -140,15 +151,12 @@ namespace Viscoplastic
               add_boundary_face(cell, f, number_of(cell), condition);
             }
           else if (cell->face(f)->has_children())
-            {
-              for (unsigned int s = 0; s < cell->face(f)->n_children(); ++s)
-                {
-                  const Cell child = cell->neighbor_child_on_subface(f, s);
-                  if (!child->is_locally_owned())
-                    add_subface(
-                      child, cell->neighbor_of_neighbor(f), cell, f, s);
-                }
-            }
+            for (unsigned int s = 0; s < cell->face(f)->n_children(); ++s)
+              {
+                const Cell child = cell->neighbor_child_on_subface(f, s);
+                if (!child->is_locally_owned())
+                  add_subface(child, cell->neighbor_of_neighbor(f), cell, f, s);
+              }
           else if (cell->neighbor_is_coarser(f))
             {
               const auto [neighbor_f, subface] =
@@ -480,6 +488,5 @@ namespace Viscoplastic
 
 
 
-  template class ResidualEstimator<2>;
-  template class ResidualEstimator<3>;
+  VISCOPLASTIC_INSTANTIATE_CLASS(ResidualEstimator);
 } // namespace Viscoplastic

@@ -182,7 +182,6 @@ namespace Viscoplastic
 
 
 
-  template class SpaceEstimator<2>;
-  template class SpaceEstimator<3>;
+  VISCOPLASTIC_INSTANTIATE_CLASS(SpaceEstimator);
   VISCOPLASTIC_INSTANTIATE(squared_recovery_estimate);
 } // namespace Viscoplastic

@@ -166,6 +166,54 @@ namespace Viscoplastic
 
 
   template <int dim>
+  void
+  StateTransfer<dim>::unpack_samples(const CellIterator          &cell,
+                                     const CellStatus             status,
+                                     const SymmetricTensor<2, 3> *values,
+                                     const StressSpace<dim> &new_stress_space,
+                                     const std::vector<unsigned int> &new_cell,
+                                     IrreversibleStress              &z) const
+  {
+    if (status == Triangulation<dim>::CELL_REFINE)
+      {
+        // On curved cells the children do not fill the parent; a shift
+        // makes up for it.
+        SymmetricTensor<2, 3> missing = values[n_values];
+        double                volume  = 0.;
+        for (unsigned int child = 0; child < cell->n_children(); ++child)
+          {
+            const std::size_t c =
+              new_cell[cell->child(child)->active_cell_index()];
+            volume += new_stress_space.volume(c);
+            for (unsigned int s = 0; s < n_samples; ++s)
+              {
+                SymmetricTensor<2, 3> &sample = z[c * n_samples + s];
+                if (n_samples == 1)
+                  sample = values[child];
+                else
+                  for (unsigned int r = 0; r < n_samples; ++r)
+                    sample += prolongation[child](s, r) * values[r];
+                missing -= new_stress_space.weight(c, s) * sample;
+              }
+          }
+        for (const auto &child : cell->child_iterators())
+          for (unsigned int s = 0; s < n_samples; ++s)
+            z[std::size_t(n_samples) * new_cell[child->active_cell_index()] +
+              s] += missing / volume;
+      }
+    else
+      {
+        const std::size_t c = new_cell[cell->active_cell_index()];
+        for (unsigned int s = 0; s < n_samples; ++s)
+          z[c * n_samples + s] = status == Triangulation<dim>::CELL_COARSEN ?
+                                   values[s] / new_stress_space.weight(c, s) :
+                                   values[s];
+      }
+  }
+
+
+
+  template <int dim>
   typename StateTransfer<dim>::Result
   StateTransfer<dim>::unpack(const StressSpace<dim> &new_stress_space)
   {
@@ -217,47 +265,6 @@ namespace Viscoplastic
       new_cell[cell->active_cell_index()] = index++;
     AssertDimension(index, new_stress_space.n_cells());
 
-    const auto unpack_field = [&](const CellIterator          &cell,
-                                  const CellStatus             status,
-                                  const SymmetricTensor<2, 3> *values,
-                                  IrreversibleStress          &z) {
-      if (status == Triangulation<dim>::CELL_REFINE)
-        {
-          // On curved cells the children do not fill the parent; a shift
-          // makes up for it.
-          SymmetricTensor<2, 3> missing = values[n_values];
-          double                volume  = 0.;
-          for (unsigned int child = 0; child < cell->n_children(); ++child)
-            {
-              const std::size_t c =
-                new_cell[cell->child(child)->active_cell_index()];
-              volume += new_stress_space.volume(c);
-              for (unsigned int s = 0; s < n_samples; ++s)
-                {
-                  SymmetricTensor<2, 3> &sample = z[c * n_samples + s];
-                  if (n_samples == 1)
-                    sample = values[child];
-                  else
-                    for (unsigned int r = 0; r < n_samples; ++r)
-                      sample += prolongation[child](s, r) * values[r];
-                  missing -= new_stress_space.weight(c, s) * sample;
-                }
-            }
-          for (const auto &child : cell->child_iterators())
-            for (unsigned int s = 0; s < n_samples; ++s)
-              z[std::size_t(n_samples) * new_cell[child->active_cell_index()] +
-                s] += missing / volume;
-        }
-      else
-        {
-          const std::size_t c = new_cell[cell->active_cell_index()];
-          for (unsigned int s = 0; s < n_samples; ++s)
-            z[c * n_samples + s] = status == Triangulation<dim>::CELL_COARSEN ?
-                                     values[s] / new_stress_space.weight(c, s) :
-                                     values[s];
-        }
-    };
-
     triangulation.notify_ready_to_unpack(
       handle,
       [&](
@@ -270,10 +277,12 @@ namespace Viscoplastic
                                                 /* allow_compression = */
                                                 false);
         for (unsigned int f = 0; f < carried.size(); ++f)
-          unpack_field(cell,
-                       status,
-                       &values[f * (n_values + 1)],
-                       *sampled(carried[f]));
+          unpack_samples(cell,
+                         status,
+                         &values[f * (n_values + 1)],
+                         new_stress_space,
+                         new_cell,
+                         *sampled(carried[f]));
       });
     return result;
   }
@@ -380,8 +389,7 @@ namespace Viscoplastic
 
 
 
-  template class StateTransfer<2>;
-  template class StateTransfer<3>;
+  VISCOPLASTIC_INSTANTIATE_CLASS(StateTransfer);
   VISCOPLASTIC_INSTANTIATE(share_mismatch);
   VISCOPLASTIC_INSTANTIATE(contact_on_new_mesh);
 } // namespace Viscoplastic

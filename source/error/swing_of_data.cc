@@ -112,89 +112,83 @@ namespace Viscoplastic
       return std::sqrt(
         Utilities::MPI::sum(square, stress_space.space.communicator));
     }
-  } // namespace
 
 
-
-  template <int dim>
-  Swing
-  swing_of_data(const Discretization<dim> &d,
-                const EvaluatedState<dim> &accepted,
-                const EvaluatedState<dim> &end)
-  {
-    const AdmissibleSpace<dim> &space = d.space;
-    const bool                  slips = d.slipping_face() != nullptr,
-               varies                 = loads_depend_on_time(d.scene()),
-               bounds_vary = slips && d.face->bounds_depend_on_time(),
-               moves       = displacements_depend_on_time(d.scene()),
-               slides      = slips && d.scene().has_moving_foundation();
-    if ((!slips && !d.scene().has_viscosity()) ||
-        !(varies || bounds_vary || moves || slides))
-      return {};
-    const double              t_old = accepted.state.t, t = end.state.t;
-    const ContactState       &contact = accepted.state.contact;
-    const std::vector<double> rates =
-      bounds_vary ? d.face->slip_rates(accepted.state.velocity,
-                                       t_old - accepted.state.k,
-                                       t_old) :
-                    std::vector<double>();
-    const auto bounds_at = [&](const double time) {
-      std::vector<double> bounds = d.face->bounds(time, rates);
-      d.face->add_computed_bounds(time, contact, bounds, rates);
-      return bounds;
-    };
-    const auto prescribed_at = [&](const double time) {
-      DistributedVector values = space.owned_vector();
-      space.set_prescribed(time, values);
-      return values;
-    };
-    std::vector<double>       bounds_before, bounds_after;
-    DistributedVector         prescribed_before, prescribed_after;
-    std::vector<Tensor<1, 2>> sliding;
-    if (bounds_vary)
+    /// The data that depend on time, of which a scene remembers something.
+    template <int dim>
+    class DataInStep
+    {
+    public:
+      DataInStep(const Discretization<dim> &d,
+                 const EvaluatedState<dim> &accepted,
+                 const EvaluatedState<dim> &end)
+        : slips(d.slipping_face() != nullptr)
+        , remembers(slips || d.scene().has_viscosity())
+        , loads_vary(remembers && loads_depend_on_time(d.scene()))
+        , bounds_vary(slips && d.face->bounds_depend_on_time())
+        , moves(remembers && displacements_depend_on_time(d.scene()))
+        , slides(slips && d.scene().has_moving_foundation())
+        , d(d)
+        , accepted(accepted)
+        , end(end)
+        , t_old(accepted.state.t)
       {
-        bounds_before = bounds_at(t_old);
-        bounds_after  = bounds_at(t);
-      }
-    if (moves)
-      {
-        prescribed_before = prescribed_at(t_old);
-        prescribed_after  = prescribed_at(t);
-      }
-    if (slides)
-      sliding = d.face->foundation_step(t_old, t);
-    const DistributedVector &before = accepted.forces.load.values,
-                            &after  = end.forces.load.values;
-    // distribute_nodes() numbers the components of a node one after the other.
-    Assert(before.locally_owned_size() % dim == 0, ExcInternalError());
-    double largest = 0., forces = end.forces.internal.norm_sqr(), motion = 0.,
-           work = 0.;
-    for (const double part : {0.25, 0.5, 0.75})
-      {
-        const double        time = t_old + part * (t - t_old);
-        std::vector<double> sums(4, 0.);
-        double              distance = 0.;
-        if (varies)
+        const double t = end.state.t;
+        if (bounds_vary)
           {
-            const Load<dim> load = d.loads.assemble(time);
-            for_each_node<dim>(before,
-                               load.values,
-                               after,
-                               [&](const double distance, const double square) {
-                                 sums[0] += distance * distance;
-                                 sums[1] += square;
-                               });
+            rates         = d.face->slip_rates(accepted.state.velocity,
+                                       t_old - accepted.state.k,
+                                       t_old);
+            bounds_before = bounds_at(t_old);
+            bounds_after  = bounds_at(t);
           }
+        if (moves)
+          {
+            prescribed_before = prescribed_at(t_old);
+            prescribed_after  = prescribed_at(t);
+          }
+        if (slides)
+          sliding = d.face->foundation_step(t_old, t);
+      }
+
+      const bool slips, remembers, loads_vary, bounds_vary, moves, slides;
+
+      /// How far data are from all that is between their values at the ends.
+      struct Deviation
+      {
+        /// Squares: of loads and friction bounds, and of the forces themselves.
+        double loads, forces;
+        /// The work of friction in what foundations move by.
+        double work;
+        /// Of displacements, gaps and foundations; not collective.
+        double motion = 0.;
+      };
+
+      /// Collective.
+      Deviation
+      at(const double time) const
+      {
+        std::vector<double> sums(4, 0.);
+        Deviation           result{};
+        double             &motion = result.motion;
+        if (loads_vary)
+          for_each_node<dim>(accepted.forces.load.values,
+                             d.loads.assemble(time).values,
+                             end.forces.load.values,
+                             [&](const double distance, const double square) {
+                               sums[0] += distance * distance;
+                               sums[1] += square;
+                             });
         if (bounds_vary)
           {
             const std::vector<double> now = bounds_at(time);
-            for (unsigned int p = 0; p < contact.n_points(); ++p)
+            for (unsigned int p = 0; p < now.size(); ++p)
               {
                 const double of_point =
                   beyond(&now[p], &bounds_before[p], &bounds_after[p], 1);
                 // Of an obstacle it is a gap.
                 if (d.face->layout().points[p].is_obstacle)
-                  distance = std::max(distance, of_point);
+                  motion = std::max(motion, of_point);
                 else
                   sums[2] += of_point * of_point;
               }
@@ -204,7 +198,7 @@ namespace Viscoplastic
                              prescribed_at(time),
                              prescribed_after,
                              [&](const double of_node, const double) {
-                               distance = std::max(distance, of_node);
+                               motion = std::max(motion, of_node);
                              });
         if (slides)
           {
@@ -215,27 +209,82 @@ namespace Viscoplastic
               {
                 const double of_point =
                   beyond(&now[p][0], &start[0], &sliding[p][0], 2);
-                distance = std::max(distance, of_point);
+                motion = std::max(motion, of_point);
                 sums[3] += end.state.contact.bound[p] * of_point;
               }
           }
-        Utilities::MPI::sum(sums, space.communicator, sums);
-        largest = std::max(largest, sums[0] + sums[2]);
-        forces  = std::max(forces, sums[1]);
-        motion  = std::max(motion, distance);
-        work    = std::max(work, sums[3]);
+        Utilities::MPI::sum(sums, d.space.communicator, sums);
+        result.loads  = sums[0] + sums[2];
+        result.forces = sums[1];
+        result.work   = sums[3];
+        return result;
       }
-    motion = Utilities::MPI::max(motion, space.communicator);
+
+    private:
+      std::vector<double>
+      bounds_at(const double time) const
+      {
+        std::vector<double> bounds = d.face->bounds(time, rates);
+        d.face->add_computed_bounds(time,
+                                    accepted.state.contact,
+                                    bounds,
+                                    rates);
+        return bounds;
+      }
+
+      DistributedVector
+      prescribed_at(const double time) const
+      {
+        DistributedVector values = d.space.owned_vector();
+        d.space.set_prescribed(time, values);
+        return values;
+      }
+
+      const Discretization<dim> &d;
+      const EvaluatedState<dim> &accepted, &end;
+      const double               t_old;
+      std::vector<double>        rates, bounds_before, bounds_after;
+      DistributedVector          prescribed_before, prescribed_after;
+      std::vector<Tensor<1, 2>>  sliding;
+    };
+  } // namespace
+
+
+
+  template <int dim>
+  Swing
+  swing_of_data(const Discretization<dim> &d,
+                const EvaluatedState<dim> &accepted,
+                const EvaluatedState<dim> &end)
+  {
+    const DataInStep<dim> data(d, accepted, end);
+    if (!(data.loads_vary || data.bounds_vary || data.moves || data.slides))
+      return {};
+    // distribute_nodes() numbers the components of a node one after the other.
+    Assert(end.forces.load.values.locally_owned_size() % dim == 0,
+           ExcInternalError());
+    const double t_old = accepted.state.t, t = end.state.t;
+    double loads = 0., forces = end.forces.internal.norm_sqr(), motion = 0.,
+           work = 0.;
+    for (const double part : {0.25, 0.5, 0.75})
+      {
+        const auto now = data.at(t_old + part * (t - t_old));
+        loads          = std::max(loads, now.loads);
+        forces         = std::max(forces, now.forces);
+        motion         = std::max(motion, now.motion);
+        work           = std::max(work, now.work);
+      }
+    motion = Utilities::MPI::max(motion, d.space.communicator);
     const double remembered =
-      slips     ? 1. :
-      !end.rate ? 1. :
-                  std::min(1., end.state.k * end.rate->relaxation_rate);
+      data.slips || !end.rate ?
+        1. :
+        std::min(1., end.state.k * end.rate->relaxation_rate);
     Swing swing;
     // Below this it is rounding. A bound without any force rubs nothing; what
     // foundations move of the body is counted below.
-    if (forces > 0. && largest > 1e-20 * forces)
+    if (forces > 0. && loads > 1e-20 * forces)
       {
-        swing.share = remembered * std::sqrt(largest / forces);
+        swing.share = remembered * std::sqrt(loads / forces);
         swing.energy_norm =
           swing.share * stress_norm(d.stress_space, end.state);
       }
@@ -252,7 +301,7 @@ namespace Viscoplastic
             share = remembered * motion / size;
             energy_norm =
               share * std::sqrt(2. * std::max(0., end.forces.strain_energy));
-            if (slides && !moves && !bounds_vary)
+            if (data.slides && !data.moves && !data.bounds_vary)
               energy_norm = std::min(energy_norm, of_friction);
           }
         swing.share       = std::hypot(swing.share, share);

@@ -165,6 +165,5 @@ namespace Viscoplastic
 
 
 
-  template class AlgebraicCoarseSolver<2>;
-  template class AlgebraicCoarseSolver<3>;
+  VISCOPLASTIC_INSTANTIATE_CLASS(AlgebraicCoarseSolver);
 } // namespace Viscoplastic

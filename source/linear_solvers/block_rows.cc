@@ -126,6 +126,64 @@ namespace Viscoplastic
         }
       return result;
     }
+
+
+    /// Lists of numbers, one a row.
+    struct Lists
+    {
+      std::vector<std::size_t>  begin;
+      std::vector<unsigned int> entries;
+    };
+
+
+
+    /// The rows in which each column occurs, in their order, of @p n_rows rows
+    /// with these columns.
+    Lists
+    transpose(const std::vector<std::size_t>  &row_begin,
+              const std::vector<unsigned int> &columns,
+              const unsigned int               n_rows,
+              const unsigned int               n_columns)
+    {
+      Lists result{std::vector<std::size_t>(n_columns + 1, 0),
+                   std::vector<unsigned int>(row_begin[n_rows])};
+      for (std::size_t e = 0; e < row_begin[n_rows]; ++e)
+        ++result.begin[columns[e] + 1];
+      for (unsigned int I = 0; I < n_columns; ++I)
+        result.begin[I + 1] += result.begin[I];
+      std::vector<std::size_t> next(result.begin.begin(),
+                                    result.begin.end() - 1);
+      for (unsigned int i = 0; i < n_rows; ++i)
+        for (std::size_t e = row_begin[i]; e < row_begin[i + 1]; ++e)
+          result.entries[next[columns[e]]++] = i;
+      return result;
+    }
+
+
+
+    /// Columns of A as rows of the interpolation.
+    template <int dim>
+    std::vector<unsigned int>
+    rows_of_columns(const BlockRows<dim>    &A,
+                    const std::vector<Node> &owned_nodes,
+                    const std::vector<Node> &ghosts,
+                    const Node               begin,
+                    const Node               end)
+    {
+      std::vector<unsigned int> result(A.columns.size());
+      LocalNumbers              number(owned_nodes, begin, end);
+      for (std::size_t e = 0; e < result.size(); ++e)
+        {
+          const Node node = A.columns[e];
+          result[e] =
+            node >= begin && node < end ?
+              number(node) :
+              owned_nodes.size() +
+                (std::lower_bound(ghosts.begin(), ghosts.end(), node) -
+                 ghosts.begin());
+        }
+      return result;
+    }
   } // namespace
 
 
@@ -143,42 +201,24 @@ namespace Viscoplastic
     const unsigned int rank  = Utilities::MPI::this_mpi_process(communicator);
     const Node         begin = begins[rank], end = begins[rank + 1];
 
-    // Rows of P by consecutive coarse numbers, and its columns (rows of P^T)
-    // over the owned fine nodes.
+    // Columns of P by consecutive coarse numbers.
     LocalNumbers              number(coarse_nodes, begin, end);
     std::vector<unsigned int> parents(P.parents.size());
     for (std::size_t e = 0; e < parents.size(); ++e)
       parents[e] = number(P.parents[e].node);
-    const std::vector<Node>  &coarse = number.all();
-    std::vector<std::size_t>  child_begin(coarse.size() + 1, 0);
-    const std::size_t         n_owned_entries = P.begin[A.n_rows()];
-    std::vector<unsigned int> children(n_owned_entries);
-    for (std::size_t e = 0; e < n_owned_entries; ++e)
-      ++child_begin[parents[e] + 1];
-    for (unsigned int I = 0; I < coarse.size(); ++I)
-      child_begin[I + 1] += child_begin[I];
-    {
-      std::vector<std::size_t> next(child_begin.begin(), child_begin.end() - 1);
-      for (unsigned int i = 0; i < A.n_rows(); ++i)
-        for (std::size_t e = P.begin[i]; e < P.begin[i + 1]; ++e)
-          children[next[parents[e]]++] = i;
-    }
-
-    // Columns of A as rows of P.
-    std::vector<unsigned int> fine_column(A.columns.size());
-    {
-      LocalNumbers fine(owned_nodes, begin, end);
-      for (std::size_t e = 0; e < A.columns.size(); ++e)
-        {
-          const Node node = A.columns[e];
-          fine_column[e] =
-            node >= begin && node < end ?
-              fine(node) :
-              owned_nodes.size() +
-                (std::lower_bound(ghosts.begin(), ghosts.end(), node) -
-                 ghosts.begin());
-        }
-    }
+    const std::vector<Node> &coarse = number.all();
+    const Lists              children =
+      transpose(P.begin, parents, A.n_rows(), coarse.size());
+    const std::vector<unsigned int> fine_column =
+      rows_of_columns(A, owned_nodes, ghosts, begin, end);
+    // Call act(e, p) for the entries e and p that a row of A P is made of.
+    const auto for_each_product = [&](const unsigned int i, const auto &act) {
+      for (std::size_t e = A.begin[i]; e < A.begin[i + 1]; ++e)
+        for (std::size_t p = P.begin[fine_column[e]];
+             p < P.begin[fine_column[e] + 1];
+             ++p)
+          act(e, p);
+    };
 
     // The pattern, coarse row by coarse row.
     std::vector<std::size_t>                   row_begin(1, 0);
@@ -188,24 +228,18 @@ namespace Viscoplastic
     for (unsigned int I = 0; I < coarse.size(); ++I)
       {
         in_order.clear();
-        for (std::size_t c = child_begin[I]; c < child_begin[I + 1]; ++c)
-          for (std::size_t e = A.begin[children[c]];
-               e < A.begin[children[c] + 1];
-               ++e)
-            for (std::size_t p = P.begin[fine_column[e]];
-                 p < P.begin[fine_column[e] + 1];
-                 ++p)
-              if (seen_in[parents[p]] != I)
-                {
-                  seen_in[parents[p]] = I;
-                  in_order.emplace_back(coarse[parents[p]], parents[p]);
-                }
+        for (std::size_t c = children.begin[I]; c < children.begin[I + 1]; ++c)
+          for_each_product(children.entries[c],
+                           [&](const std::size_t, const std::size_t p) {
+                             if (seen_in[parents[p]] == I)
+                               return;
+                             seen_in[parents[p]] = I;
+                             in_order.emplace_back(coarse[parents[p]],
+                                                   parents[p]);
+                           });
         std::sort(in_order.begin(), in_order.end());
-        for (const auto &[node, J] : in_order)
-          {
-            (void)node;
-            columns.push_back(J);
-          }
+        for (const auto &entry : in_order)
+          columns.push_back(entry.second);
         row_begin.push_back(columns.size());
       }
 
@@ -217,20 +251,16 @@ namespace Viscoplastic
       {
         touched.clear();
         sums.clear();
-        for (std::size_t e = A.begin[i]; e < A.begin[i + 1]; ++e)
-          for (std::size_t p = P.begin[fine_column[e]];
-               p < P.begin[fine_column[e] + 1];
-               ++p)
+        for_each_product(i, [&](const std::size_t e, const std::size_t p) {
+          unsigned int &k = place[parents[p]];
+          if (k == none)
             {
-              unsigned int &k = place[parents[p]];
-              if (k == none)
-                {
-                  k = touched.size();
-                  touched.push_back(parents[p]);
-                  sums.push_back(NodeBlock<dim>());
-                }
-              sums[k] += P.parents[p].weight * A.values[e];
+              k = touched.size();
+              touched.push_back(parents[p]);
+              sums.push_back(NodeBlock<dim>());
             }
+          sums[k] += P.parents[p].weight * A.values[e];
+        });
         for (std::size_t p = P.begin[i]; p < P.begin[i + 1]; ++p)
           {
             const unsigned int I = parents[p];
@@ -251,16 +281,11 @@ namespace Viscoplastic
     rows.values.assign(values.begin(), values.begin() + rows.begin.back());
     if (Utilities::MPI::n_mpi_processes(communicator) == 1)
       return rows;
-
     std::map<unsigned int, std::vector<Entry<dim>>> to_send;
     for (unsigned int I = n_owned; I < coarse.size(); ++I)
-      {
-        const unsigned int owner =
-          std::upper_bound(begins.begin(), begins.end(), coarse[I]) -
-          begins.begin() - 1;
-        for (std::size_t e = row_begin[I]; e < row_begin[I + 1]; ++e)
-          to_send[owner].push_back({coarse[I], coarse[columns[e]], values[e]});
-      }
+      for (std::size_t e = row_begin[I]; e < row_begin[I + 1]; ++e)
+        to_send[owner_of(coarse[I], begins)].push_back(
+          {coarse[I], coarse[columns[e]], values[e]});
     return exchange(rows, to_send, number, communicator);
   }
 

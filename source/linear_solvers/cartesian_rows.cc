@@ -7,18 +7,52 @@
 #include <Epetra_CrsMatrix.h>
 #include <Epetra_Import.h>
 #include <Epetra_MultiVector.h>
-#include <Epetra_Vector.h>
 
 #include <algorithm>
 #include <array>
-#include <memory>
+#include <optional>
 
 namespace Viscoplastic
 {
   namespace
   {
     using Node = NodeHierarchy::Node;
-  }
+
+
+
+    /// Values of owned degrees of freedom for the columns of a matrix.
+    /// Collective.
+    Epetra_MultiVector
+    at_columns(const Epetra_CrsMatrix &K, const Epetra_MultiVector &owned)
+    {
+      if (K.Importer() == nullptr)
+        return owned;
+      Epetra_MultiVector result(K.ColMap(), owned.NumVectors());
+      result.Import(owned, *K.Importer(), Insert);
+      return result;
+    }
+
+
+
+    /// The direction of each column, as a vector for each of its components:
+    /// its owner knows it, and hanging nodes couple rows with nodes that no
+    /// cell here has. Collective.
+    template <int dim>
+    Epetra_MultiVector
+    directions_of_columns(const Epetra_CrsMatrix &K,
+                          const NodeHierarchy    &hierarchy)
+    {
+      Epetra_MultiVector owned(K.DomainMap(), dim);
+      for (int i = 0; i < owned.MyLength(); ++i)
+        owned[i % dim][i] = 1.;
+      for (const auto &[node, frame] : hierarchy.frames)
+        if (node >= hierarchy.begin && node < hierarchy.end)
+          for (unsigned int d = 0; d < dim; ++d)
+            for (unsigned int i = 0; i < dim; ++i)
+              owned[d][(node - hierarchy.begin) * dim + i] = frame[d][i];
+      return at_columns(K, owned);
+    }
+  } // namespace
 
 
 
@@ -31,36 +65,18 @@ namespace Viscoplastic
                  const double             unit)
   {
     const Epetra_CrsMatrix &K = matrix.trilinos_matrix();
-    Epetra_Vector           keep(K.DomainMap());
+    Epetra_MultiVector      owned_keep(K.DomainMap(), 1);
+    double *const           keep = owned_keep[0];
     for (std::size_t i = 0; i < excluded.size(); ++i)
       keep[i] = excluded[i] ? 0. : 1.;
-    Epetra_Vector keep_column(K.ColMap());
-    if (K.Importer() != nullptr)
-      keep_column.Import(keep, *K.Importer(), Insert);
-    else
-      keep_column = keep;
-    // Where frames are rotated: the direction of each column. The owner knows
-    // it; hanging nodes couple rows with nodes that no cell here has.
-    const bool has_frames =
+    const Epetra_MultiVector keep_columns = at_columns(K, owned_keep);
+    const double *const      keep_column  = keep_columns[0];
+    const bool               has_frames =
       Utilities::MPI::max(hierarchy.frames.empty() ? 0 : 1,
                           matrix.get_mpi_communicator()) == 1;
-    std::unique_ptr<Epetra_MultiVector> directions;
+    std::optional<Epetra_MultiVector> directions;
     if (has_frames)
-      {
-        Epetra_MultiVector owned(K.DomainMap(), dim);
-        for (std::size_t i = 0; i < excluded.size(); ++i)
-          owned[i % dim][i] = 1.;
-        for (const auto &[node, frame] : hierarchy.frames)
-          if (node >= hierarchy.begin && node < hierarchy.end)
-            for (unsigned int d = 0; d < dim; ++d)
-              for (unsigned int i = 0; i < dim; ++i)
-                owned[d][(node - hierarchy.begin) * dim + i] = frame[d][i];
-        directions = std::make_unique<Epetra_MultiVector>(K.ColMap(), dim);
-        if (K.Importer() != nullptr)
-          directions->Import(owned, *K.Importer(), Insert);
-        else
-          *directions = owned;
-      }
+      directions = directions_of_columns<dim>(K, hierarchy);
 
     // The node of each column, if it is the first of the node, and where the
     // other ones are: of ghosts in any order.

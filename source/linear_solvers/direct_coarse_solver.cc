@@ -106,6 +106,5 @@ namespace Viscoplastic
 
 
 
-  template class DirectCoarseSolver<2>;
-  template class DirectCoarseSolver<3>;
+  VISCOPLASTIC_INSTANTIATE_CLASS(DirectCoarseSolver);
 } // namespace Viscoplastic

@@ -457,6 +457,5 @@ namespace Viscoplastic
 
 
 
-  template class GeometricMultigrid<2>;
-  template class GeometricMultigrid<3>;
+  VISCOPLASTIC_INSTANTIATE_CLASS(GeometricMultigrid);
 } // namespace Viscoplastic

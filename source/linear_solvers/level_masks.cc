@@ -317,6 +317,5 @@ namespace Viscoplastic
 
 
 
-  template class LevelMasks<2>;
-  template class LevelMasks<3>;
+  VISCOPLASTIC_INSTANTIATE_CLASS(LevelMasks);
 } // namespace Viscoplastic

@@ -22,9 +22,7 @@ namespace Viscoplastic
   {
     std::map<unsigned int, std::vector<Node>> questions;
     for (const Node node : nodes)
-      questions[std::upper_bound(begins.begin(), begins.end(), node) -
-                begins.begin() - 1]
-        .push_back(node);
+      questions[owner_of(node, begins)].push_back(node);
     std::map<unsigned int, std::vector<std::vector<NodeHierarchy::Parent>>>
       to_send;
     for (const auto &[rank, asked] :
@@ -37,9 +35,7 @@ namespace Viscoplastic
     std::map<unsigned int, unsigned int>            next;
     for (const Node node : nodes)
       {
-        const unsigned int rank =
-          std::upper_bound(begins.begin(), begins.end(), node) -
-          begins.begin() - 1;
+        const unsigned int rank = owner_of(node, begins);
         result.push_back(received.at(rank)[next[rank]++]);
       }
     return result;
@@ -251,6 +247,5 @@ namespace Viscoplastic
 
 
 
-  template class MultigridLevel<2>;
-  template class MultigridLevel<3>;
+  VISCOPLASTIC_INSTANTIATE_CLASS(MultigridLevel);
 } // namespace Viscoplastic

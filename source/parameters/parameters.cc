@@ -356,6 +356,14 @@ namespace Viscoplastic
                       tangential_stiffness,
                       "k_t(x) >= 0 of these springs along the piece. Unit: "
                       "stress/length.");
+    declare_contact(prm);
+  }
+
+
+
+  void
+  BoundaryParameters::declare_contact(ParameterHandler &prm)
+  {
     add_choice(
       prm,
       "Contact law",

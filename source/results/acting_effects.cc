@@ -196,6 +196,5 @@ namespace Viscoplastic
 
 
 
-  template class ActingEffects<2>;
-  template class ActingEffects<3>;
+  VISCOPLASTIC_INSTANTIATE_CLASS(ActingEffects);
 } // namespace Viscoplastic

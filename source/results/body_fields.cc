@@ -284,6 +284,5 @@ namespace Viscoplastic
 
 
 
-  template class BodyFields<2>;
-  template class BodyFields<3>;
+  VISCOPLASTIC_INSTANTIATE_CLASS(BodyFields);
 } // namespace Viscoplastic

@@ -197,6 +197,26 @@ namespace Viscoplastic
 
 
   template <int dim>
+  Tensor<1, dim>
+  BoundaryFields<dim>::stress_vector(const std::size_t     c,
+                                     const Tensor<1, dim> &normal) const
+  {
+    std::vector<SymmetricTensor<2, 3>> samples(stress_space.n_samples);
+    stress_space.strains(c, state.u.begin(), samples.data());
+    SymmetricTensor<2, 3> stress =
+      stress_space.moduli(c).stress(stress_space.mean(c, samples.data()));
+    if (!state.z.empty())
+      stress += stress_space.mean(c, &state.z[c * stress_space.n_samples]);
+    Tensor<1, dim> result;
+    for (unsigned int i = 0; i < dim; ++i)
+      for (unsigned int j = 0; j < dim; ++j)
+        result[i] += stress[i][j] * normal[j];
+    return result;
+  }
+
+
+
+  template <int dim>
   std::vector<double>
   BoundaryFields<dim>::values(const std::size_t     c,
                               const unsigned int    f,
@@ -222,19 +242,6 @@ namespace Viscoplastic
       return condition.has_friction() && field.size() > 0 ?
                field.begin()[node] :
                0.;
-    };
-    const auto stress_vector = [&]() {
-      std::vector<SymmetricTensor<2, 3>> samples(stress_space.n_samples);
-      stress_space.strains(c, state.u.begin(), samples.data());
-      SymmetricTensor<2, 3> stress =
-        stress_space.moduli(c).stress(stress_space.mean(c, samples.data()));
-      if (!state.z.empty())
-        stress += stress_space.mean(c, &state.z[c * stress_space.n_samples]);
-      Tensor<1, dim> result;
-      for (unsigned int i = 0; i < dim; ++i)
-        for (unsigned int j = 0; j < dim; ++j)
-          result[i] += stress[i][j] * normal[j];
-      return result;
     };
 
     std::vector<double> result;
@@ -291,10 +298,10 @@ namespace Viscoplastic
             result.push_back(scalar(friction_work));
             break;
           case RecordedField::normal_traction:
-            result.push_back(stress_vector() * normal);
+            result.push_back(stress_vector(c, normal) * normal);
             break;
           case RecordedField::stress_vector:
-            append(stress_vector());
+            append(stress_vector(c, normal));
             break;
           default:
             Assert(false, ExcInternalError());
@@ -326,6 +333,5 @@ namespace Viscoplastic
 
 
 
-  template class BoundaryFields<2>;
-  template class BoundaryFields<3>;
+  VISCOPLASTIC_INSTANTIATE_CLASS(BoundaryFields);
 } // namespace Viscoplastic

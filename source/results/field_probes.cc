@@ -297,8 +297,6 @@ namespace Viscoplastic
 
 
 
-  template class FieldProbes<2>;
-  template class FieldProbes<3>;
-  template class FieldIntegrals<2>;
-  template class FieldIntegrals<3>;
+  VISCOPLASTIC_INSTANTIATE_CLASS(FieldProbes);
+  VISCOPLASTIC_INSTANTIATE_CLASS(FieldIntegrals);
 } // namespace Viscoplastic

@@ -204,6 +204,5 @@ namespace Viscoplastic
 
 
 
-  template class LineOutput<2>;
-  template class LineOutput<3>;
+  VISCOPLASTIC_INSTANTIATE_CLASS(LineOutput);
 } // namespace Viscoplastic

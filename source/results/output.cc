@@ -533,6 +533,5 @@ namespace Viscoplastic
 
 
 
-  template class Output<2>;
-  template class Output<3>;
+  VISCOPLASTIC_INSTANTIATE_CLASS(Output);
 } // namespace Viscoplastic

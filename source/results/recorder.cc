@@ -341,6 +341,5 @@ namespace Viscoplastic
 
 
 
-  template class Recorder<2>;
-  template class Recorder<3>;
+  VISCOPLASTIC_INSTANTIATE_CLASS(Recorder);
 } // namespace Viscoplastic

@@ -384,6 +384,5 @@ namespace Viscoplastic
 
 
 
-  template struct RunSummary<2>;
-  template struct RunSummary<3>;
+  VISCOPLASTIC_INSTANTIATE_CLASS(RunSummary);
 } // namespace Viscoplastic

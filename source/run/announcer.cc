@@ -238,6 +238,5 @@ namespace Viscoplastic
 
 
 
-  template class Announcer<2>;
-  template class Announcer<3>;
+  VISCOPLASTIC_INSTANTIATE_CLASS(Announcer);
 } // namespace Viscoplastic

@@ -394,6 +394,62 @@ namespace Viscoplastic
 
 
 
+  namespace
+  {
+    /// Add sentences on moduli and times that no known material has.
+    template <int dim>
+    void
+    add_implausible_in_si(const Scene<dim>                       &scene,
+                          const std::vector<MaterialRanges<dim>> &ranges,
+                          const LargestStress                    &stress,
+                          std::vector<std::string>               &result)
+    {
+      const Units &units     = scene.parameters.units;
+      const auto   with_unit = [&units](const double value) {
+        return number(value) + units.suffix(Quantity::stress, dim);
+      };
+      const auto in_si = [](const double value, const std::string &unit) {
+        return number(value) + ' ' + unit + " in the SI";
+      };
+      for (const auto &[material, modulus, ratio, time, limit] : ranges)
+        {
+          // From soft gels to diamond, which has 1.2e12 Pa.
+          constexpr double least = 1e3, largest = 1.3e12;
+          const double     unit = units.stress.si;
+          if (modulus.least * unit < least || modulus.largest * unit > largest)
+            {
+              const double value =
+                modulus.least * unit < least ? modulus.least : modulus.largest;
+              result.push_back(
+                "Young's modulus of '" + material->section + "' is " +
+                with_unit(value) + " (" + in_si(value * unit, "Pa") +
+                "); known materials have 1e4 Pa (gels), 1e6 Pa (rubber), 1e10 Pa "
+                "(rock), 2e11 Pa (steel), up to 1.2e12 Pa (diamond).");
+            }
+          // Nobody waits so long for a law to do what it does at once.
+          constexpr double at_once = 1e-9;
+          const double     end     = scene.schedule.end_time();
+          if (time.largest > 0. && time.largest < at_once * end)
+            result.push_back(
+              "the law of '" + material->section + "' relaxes " +
+              with_unit(stress.value) + " (" + stress.origin + ") within " +
+              number(time.largest) + units.suffix(Quantity::time, dim) + ", " +
+              number(end / time.largest) +
+              " times shorter than the run; look at the units of its parameters" +
+              (scene.temperature ? " and at the temperatures." : "."));
+          if (stress.is_load && stress.value > 0.1 * modulus.largest)
+            result.push_back(
+              "the data reach " + with_unit(stress.value) + " (" +
+              stress.origin + "), a strain of about " +
+              number(std::round(100. * stress.value / modulus.largest)) +
+              " % with Young's modulus of '" + material->section + "', " +
+              with_unit(modulus.largest) + "; small strains are assumed.");
+        }
+    }
+  } // namespace
+
+
+
   template <int dim>
   std::vector<std::string>
   implausible_data(const Discretization<dim> &discretization,
@@ -471,46 +527,8 @@ namespace Viscoplastic
                              "else holds it.");
             break;
           }
-    if (!units.are_declared())
-      return result;
-
-    const auto in_si = [](const double value, const std::string &unit) {
-      return number(value) + ' ' + unit + " in the SI";
-    };
-    for (const auto &[material, modulus, ratio, time, limit] : ranges)
-      {
-        // From soft gels to diamond, which has 1.2e12 Pa.
-        constexpr double least = 1e3, largest = 1.3e12;
-        const double     unit = units.stress.si;
-        if (modulus.least * unit < least || modulus.largest * unit > largest)
-          {
-            const double value =
-              modulus.least * unit < least ? modulus.least : modulus.largest;
-            result.push_back(
-              "Young's modulus of '" + material->section + "' is " +
-              with_unit(value) + " (" + in_si(value * unit, "Pa") +
-              "); known materials have 1e4 Pa (gels), 1e6 Pa (rubber), 1e10 Pa "
-              "(rock), 2e11 Pa (steel), up to 1.2e12 Pa (diamond).");
-          }
-        // Nobody waits so long for a law to do what it does at once.
-        constexpr double at_once = 1e-9;
-        const double     end     = scene.schedule.end_time();
-        if (time.largest > 0. && time.largest < at_once * end)
-          result.push_back(
-            "the law of '" + material->section + "' relaxes " +
-            with_unit(stress.value) + " (" + stress.origin + ") within " +
-            number(time.largest) + units.suffix(Quantity::time, dim) + ", " +
-            number(end / time.largest) +
-            " times shorter than the run; look at the units of its parameters" +
-            (scene.temperature ? " and at the temperatures." : "."));
-        if (stress.is_load && stress.value > 0.1 * modulus.largest)
-          result.push_back(
-            "the data reach " + with_unit(stress.value) + " (" + stress.origin +
-            "), a strain of about " +
-            number(std::round(100. * stress.value / modulus.largest)) +
-            " % with Young's modulus of '" + material->section + "', " +
-            with_unit(modulus.largest) + "; small strains are assumed.");
-      }
+    if (units.are_declared())
+      add_implausible_in_si(scene, ranges, stress, result);
     return result;
   }
 

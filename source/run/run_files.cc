@@ -282,6 +282,5 @@ namespace Viscoplastic
 
 
 
-  template class RunFiles<2>;
-  template class RunFiles<3>;
+  VISCOPLASTIC_INSTANTIATE_CLASS(RunFiles);
 } // namespace Viscoplastic

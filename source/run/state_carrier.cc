@@ -206,10 +206,7 @@ namespace Viscoplastic
 
 
 
-  template class StateCarrier<2>;
-  template class StateCarrier<3>;
-  template class MeshChange<2>;
-  template class MeshChange<3>;
-  template class StageChange<2>;
-  template class StageChange<3>;
+  VISCOPLASTIC_INSTANTIATE_CLASS(StateCarrier);
+  VISCOPLASTIC_INSTANTIATE_CLASS(MeshChange);
+  VISCOPLASTIC_INSTANTIATE_CLASS(StageChange);
 } // namespace Viscoplastic

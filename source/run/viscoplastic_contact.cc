@@ -495,6 +495,5 @@ namespace Viscoplastic
 
 
 
-  template class ViscoplasticContact<2>;
-  template class ViscoplasticContact<3>;
+  VISCOPLASTIC_INSTANTIATE_CLASS(ViscoplasticContact);
 } // namespace Viscoplastic

@@ -163,7 +163,6 @@ namespace Viscoplastic
 
 
 
-  template struct OutputLine<2>;
-  template struct OutputLine<3>;
+  VISCOPLASTIC_INSTANTIATE_CLASS(OutputLine);
   VISCOPLASTIC_INSTANTIATE(check_output_places);
 } // namespace Viscoplastic

@@ -244,6 +244,5 @@ namespace Viscoplastic
 
 
 
-  template class Scene<2>;
-  template class Scene<3>;
+  VISCOPLASTIC_INSTANTIATE_CLASS(Scene);
 } // namespace Viscoplastic

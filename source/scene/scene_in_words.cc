@@ -2,7 +2,6 @@
 #include <viscoplastic_contact/base/types.h>
 #include <viscoplastic_contact/scene/scene.h>
 
-#include <algorithm>
 #include <cmath>
 #include <sstream>
 

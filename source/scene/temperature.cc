@@ -67,7 +67,6 @@ namespace Viscoplastic
 
 
 
-  template class Temperature<2>;
-  template class Temperature<3>;
+  VISCOPLASTIC_INSTANTIATE_CLASS(Temperature);
   VISCOPLASTIC_INSTANTIATE(make_temperature);
 } // namespace Viscoplastic

@@ -167,7 +167,6 @@ namespace Viscoplastic
 
 
 
-  template class ExplicitStep<2>;
-  template class ExplicitStep<3>;
+  VISCOPLASTIC_INSTANTIATE_CLASS(ExplicitStep);
   VISCOPLASTIC_INSTANTIATE(check_stability);
 } // namespace Viscoplastic

@@ -135,6 +135,5 @@ namespace Viscoplastic
 
 
 
-  template class ImplicitStep<2>;
-  template class ImplicitStep<3>;
+  VISCOPLASTIC_INSTANTIATE_CLASS(ImplicitStep);
 } // namespace Viscoplastic

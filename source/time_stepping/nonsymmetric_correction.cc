@@ -331,7 +331,6 @@ namespace Viscoplastic
 
 
 
-  template class NonsymmetricCorrection<2>;
-  template class NonsymmetricCorrection<3>;
+  VISCOPLASTIC_INSTANTIATE_CLASS(NonsymmetricCorrection);
   VISCOPLASTIC_INSTANTIATE(have_symmetric_tangents);
 } // namespace Viscoplastic

@@ -339,6 +339,47 @@ namespace Viscoplastic
 
 
   template <int dim>
+  typename ProximalSprings<dim>::Held
+  ProximalSprings<dim>::measure(const StepProblem<dim>  &problem,
+                                const DistributedVector &right_side,
+                                const double             tolerance,
+                                const DistributedVector &u,
+                                const DistributedVector &change,
+                                const DistributedVector &whole,
+                                ContactReport           &report) const
+  {
+    Held              held;
+    DistributedVector force(springs);
+    force.scale(change);
+    held.in_springs = norm(change);
+    // Of a way without end nothing but rounding is left in norms, but
+    // forces that balance leave nothing in the springs.
+    const double force_in_springs = force.l1_norm();
+    singular_matrix->vmult(force, u);
+    held.size =
+      std::max(std::sqrt(std::max(0., u * force)), problem.former_size());
+    held.in_balance =
+      force_in_springs <=
+        0.01 * std::max(force.l1_norm(), right_side.l1_norm()) ||
+      held.in_springs <= rounding * norm(whole);
+    report.error += held.in_springs;
+    // A body under no loads, but for what rounding of its way makes of old
+    // stresses, that moves without strain has no other size.
+    force = springs;
+    force.scale(whole);
+    const double reference =
+      right_side.l1_norm() >
+          rounding_of_forces / spring_stiffness * force.l1_norm() ?
+        held.size :
+        std::max(held.size, report.rounding_error / tolerance);
+    report.relative_error = reference > 0. ? report.error / reference : 0.;
+    report.tolerance      = tolerance;
+    return held;
+  }
+
+
+
+  template <int dim>
   ContactReport
   ProximalSprings<dim>::solve(const StepProblem<dim>  &problem,
                               const DistributedVector &right_side,
@@ -382,33 +423,10 @@ namespace Viscoplastic
 
         change = u;
         change -= center;
-        right = springs;
-        right.scale(change);
-        const double in_springs = norm(change);
-        // Of a way without end nothing but rounding is left in norms, but
-        // forces that balance leave nothing in the springs.
-        const double force_in_springs = right.l1_norm();
-        singular_matrix->vmult(right, u);
-        const double size =
-          std::max(std::sqrt(std::max(0., u * right)), problem.former_size());
         DistributedVector whole(center);
         whole += rigid_motion;
-        const bool in_balance =
-          force_in_springs <=
-            0.01 * std::max(right.l1_norm(), right_side.l1_norm()) ||
-          in_springs <= rounding * norm(whole);
-        report.error += in_springs;
-        // A body under no loads, but for what rounding of its way makes of old
-        // stresses, that moves without strain has no other size.
-        right = springs;
-        right.scale(whole);
-        const double reference =
-          right_side.l1_norm() >
-              rounding_of_forces / spring_stiffness * right.l1_norm() ?
-            size :
-            std::max(size, report.rounding_error / tolerance);
-        report.relative_error = reference > 0. ? report.error / reference : 0.;
-        report.tolerance      = tolerance;
+        const auto [in_springs, size, in_balance] =
+          measure(problem, right_side, tolerance, u, change, whole, report);
         // What rounding leaves of a solve may be left in the springs, too.
         if (in_balance && report.error <= std::max(tolerance * size,
                                                    2. * report.rounding_error))
@@ -454,6 +472,5 @@ namespace Viscoplastic
 
 
 
-  template class ProximalSprings<2>;
-  template class ProximalSprings<3>;
+  VISCOPLASTIC_INSTANTIATE_CLASS(ProximalSprings);
 } // namespace Viscoplastic

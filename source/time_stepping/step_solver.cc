@@ -378,6 +378,5 @@ namespace Viscoplastic
 
 
 
-  template class StepSolver<2>;
-  template class StepSolver<3>;
+  VISCOPLASTIC_INSTANTIATE_CLASS(StepSolver);
 } // namespace Viscoplastic

@@ -438,4 +438,84 @@ namespace
     EXPECT_FALSE(parsed("sigma_eq")->depends_on_time());
     EXPECT_TRUE(parsed("sigma_eq", "exp(-x)")->depends_on_position());
   }
+
+
+
+  TEST(Laws, TangentsAtKinks)
+  {
+    const auto check = [](const FlowingBody &body,
+                          const Tensor2     &stress,
+                          const Tensor2     &strain) {
+      const auto   tangents = body.tangents(stress, strain);
+      const double h        = 1e-5 * deviator(stress).norm();
+      for (const Tensor2 &direction : basis())
+        {
+          const Tensor2 difference =
+            (body.rate(stress + h * direction, strain) -
+             body.rate(stress - h * direction, strain)) /
+            (2 * h);
+          expect_near(tangents.stress * direction,
+                      difference,
+                      1e-7 * body.relaxation_rate(stress, strain));
+        }
+    };
+    RandomTensors random;
+    for (const Stiffness &E : {stiffness, triclinic()})
+      for (const double factor : {0.999, 1.001, 10.})
+        {
+          SCOPED_TRACE(factor);
+          const Tensor2 stress = random.with_deviator(factor * 0.7);
+          check(FlowingBody(perzyna(0.7, 0.2), E), stress, {});
+          // Of a von Mises cap of 0.7 sqrt(3/2).
+          check(FlowingBody(norton(0.5, 3., 0.7 * std::sqrt(1.5)), E),
+                stress,
+                {});
+          // The radius is 0.7 with the strain of this length.
+          check(FlowingBody(perzyna(0.5, 0.2, 0.5), E),
+                stress,
+                E.strain(stress) + 0.4 * std::sqrt(1.5) /
+                                     deviator(stress).norm() *
+                                     deviator(stress));
+          check(FlowingBody(parsed("max(0, sigma_eq - 0.7*sqrt(3/2))"), E),
+                stress,
+                {});
+        }
+
+    for (const FlowingBody &body : {FlowingBody(perzyna(0., 0.2)),
+                                    FlowingBody(norton(1., 1., 1.)),
+                                    FlowingBody(norton(1., 2., 1.)),
+                                    FlowingBody(parsed("sigma_eq"))})
+      {
+        // Without pressure, in which such a stress would be lost.
+        check(body, deviator(random.with_deviator(1e-9)), {});
+        const Tensor4 at_zero = body.tangents({}).stress;
+        EXPECT_NEAR(largest_eigenvalue(at_zero),
+                    body.relaxation_rate({}),
+                    1e-12);
+      }
+  }
+
+
+
+  TEST(Laws, RelaxationAtFixedStrain)
+  {
+    const Tensor2 start   = symmetric(2, 1, -6, 3, 0, 0);
+    const double  length  = deviator(start).norm();
+    const Tensor2 e       = deviator(start) / length;
+    const Tensor2 average = trace(start) / 3 * unit_symmetric_tensor<3>();
+    const double  k       = 0.05;
+
+    for (const double yield_radius : {0., 0.7})
+      {
+        const FlowingBody body(perzyna(yield_radius, 0.2));
+        Tensor2           stress = start;
+        for (unsigned int n = 1; n <= 40; ++n)
+          {
+            stress += k * body.rate(stress);
+            const double excess =
+              (length - yield_radius) * std::pow(1 - k * 4., n);
+            expect_near(stress, average + (yield_radius + excess) * e, 1e-13);
+          }
+      }
+  }
 } // namespace

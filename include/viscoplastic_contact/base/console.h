@@ -41,7 +41,6 @@ namespace Viscoplastic
       return everywhere;
     }
 
-    /// Text goes to the log alone.
     std::ostream &
     log()
     {

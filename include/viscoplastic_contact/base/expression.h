@@ -119,7 +119,6 @@ namespace Viscoplastic
     std::vector<double>
     rows_of_tables() const;
 
-    /// The parameter that gives it.
     const std::string &
     name_of_entry() const
     {

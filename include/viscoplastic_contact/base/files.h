@@ -58,7 +58,6 @@ namespace Viscoplastic
   public:
     DirectoryLock() = default;
 
-    /// Gives the directory free.
     ~DirectoryLock();
 
     DirectoryLock(const DirectoryLock &) = delete;

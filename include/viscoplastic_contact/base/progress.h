@@ -103,8 +103,8 @@ namespace Viscoplastic
     /// The total error estimate over the energy norm of the solution; in scenes
     /// with an error estimate.
     std::optional<double> relative_error = {};
-    /// Where steps are chosen on the way: which part of the time is done, and
-    /// how many the run may have, if that is known already.
+    /// With adaptive steps: the fraction of the time that is done, and the
+    /// expected number of steps, once it is known.
     std::optional<double> done           = {};
     std::optional<double> expected_steps = {};
   };
@@ -136,8 +136,8 @@ namespace Viscoplastic
 
   private:
     static constexpr unsigned int max_lines = 200;
-    /// In seconds, less than what a Heartbeat waits for: of short steps, lines
-    /// of their own tell more.
+    /// The next step gets a line after so many seconds: less than a Heartbeat
+    /// waits for, since lines of steps tell more.
     static constexpr double long_silence = 8.;
 
     /// Whether a step other than the last one gets a line; @p done is the part
@@ -153,8 +153,8 @@ namespace Viscoplastic
 
     /// Steps without a line since the last one with a line.
     unsigned int n_left_out = 0;
-    /// Of the step before the present one: the number of cells, and whether
-    /// none (0), some (1) or all (2) of the face slips.
+    /// The number of cells in the last step, and whether none (0), some (1) or
+    /// all (2) of the contact face slipped in it.
     double last_cells = 0.;
     int    last_slip  = 0;
     /// The part of the run that had been done at the last line, and at the last

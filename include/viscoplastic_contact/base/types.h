@@ -46,6 +46,11 @@ namespace Viscoplastic
   template decltype(function<2>) function<2>; \
   template decltype(function<3>) function<3>
 
+/// Explicit instantiation of a class template of the dimension alone.
+#define VISCOPLASTIC_INSTANTIATE_CLASS(Class) \
+  template class Class<2>;                    \
+  template class Class<3>
+
 /// As VISCOPLASTIC_INSTANTIATE, of a member function without overloads that
 /// stands apart from the others of its class, in a file of its own.
 #define VISCOPLASTIC_INSTANTIATE_MEMBER(Class, function)       \

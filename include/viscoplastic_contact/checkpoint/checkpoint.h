@@ -2,6 +2,7 @@
 #pragma once
 
 #include <deal.II/distributed/tria.h>
+#include <deal.II/grid/cell_id.h>
 #include <deal.II/lac/vector.h>
 
 #include <viscoplastic_contact/base/binary_archive.h>
@@ -28,6 +29,16 @@ namespace Viscoplastic
   template <int dim>
   std::string
   pack_mesh(const parallel::distributed::Triangulation<dim> &triangulation);
+
+  /// The cells that pack_mesh() has packed. Throws ExcMessage if they are none
+  /// of a mesh with @p n_coarse_cells.
+  template <int dim>
+  std::vector<CellId>
+  unpack_mesh(const std::string &bytes, const unsigned int n_coarse_cells);
+
+  /// Throws ExcMessage if false: the checkpoint is damaged or of another mesh.
+  void
+  require_sense(const bool condition);
 
   /// Refine and coarsen until the mesh is the one that pack_mesh() has seen on
   /// all ranks together, whose results are @p parts. Throws ExcMessage if that

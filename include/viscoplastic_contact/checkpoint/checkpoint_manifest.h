@@ -16,8 +16,7 @@ namespace Viscoplastic
     unsigned int n         = 0;
     double       t         = 0.;
     unsigned int dimension = 0, n_ranks = 0;
-    /// The version of the program that wrote it.
-    std::string version;
+    std::string  version;
     /// Every parameter of the run, by `Section/Entry'.
     std::map<std::string, std::string> parameters;
 

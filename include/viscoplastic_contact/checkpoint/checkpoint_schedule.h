@@ -30,8 +30,8 @@ namespace Viscoplastic
       bool is_late = false;
     };
 
-    /// After step @p n. The last checkpoint of a run is for who adds a phase
-    /// later.
+    /// The decision after step @p n; the last step is due, too, for runs that
+    /// are continued by another phase.
     Decision
     after_step(const unsigned int n, const bool is_last_step, const double now)
     {

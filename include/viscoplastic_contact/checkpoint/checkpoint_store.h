@@ -43,13 +43,13 @@ namespace Viscoplastic
       return directory + "step_" + dealii::Utilities::int_to_string(n, 6);
     }
 
-    /// Make the directory, so that a place that cannot be had shows at once.
+    /// Make the directory; throws ExcMessage if it cannot be made.
     void
     make_directory() const;
 
-    /// Write the files that each rank gives, by name, and remove all but the
-    /// newest @p n_kept checkpoints. The manifest's files are filled in. What
-    /// has the name of the checkpoint but is none of this program is renamed.
+    /// Write the files of each rank (name to bytes) and a manifest that lists
+    /// them, and remove all but the newest @p n_kept checkpoints. A foreign
+    /// directory of that name is renamed.
     std::vector<std::string>
     write(CheckpointManifest                        manifest,
           const std::map<std::string, std::string> &files_of_this_rank,
@@ -78,7 +78,6 @@ namespace Viscoplastic
     Removal
     remove_others(const unsigned int n, const unsigned int n_kept) const;
 
-    /// Remove all checkpoints.
     Removal
     remove_all() const
     {

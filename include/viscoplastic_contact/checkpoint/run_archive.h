@@ -49,7 +49,7 @@ namespace Viscoplastic
     bool of_data = false;
   };
 
-  /// Tell the user what is not as it was when a checkpoint was written.
+  /// Tell the user which parameters are not those of a checkpoint.
   void
   remark_on_changes(const CheckpointManifest &checkpoint,
                     const ParameterChanges   &changes,

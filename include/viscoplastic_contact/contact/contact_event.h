@@ -31,8 +31,8 @@ namespace Viscoplastic
     /// slip in the old direction would have asked for. And sum of |lambda|
     /// times the slip that `resting' points miss.
     double work = 0.;
-    /// Point by point: slip has the direction of the end of the step all along,
-    /// where the mean of both ends would be right.
+    /// The error of each point's slip from taking its direction at the end of
+    /// the step instead of the mean of both ends.
     std::vector<Tensor<1, 2>> turning;
     /// Points slow down so fast that they come to rest before the end, where
     /// the step sees them slip. With the rates v_0 > 0 > v_1 of a line through
@@ -42,8 +42,8 @@ namespace Viscoplastic
     std::vector<Tensor<1, 2>> resting;
   };
 
-  /// @p slips: of the step; @p k and @p old_k: its length and that of the one
-  /// before. Collective.
+  /// @p slips: the slip increments of the step, whose size is @p k, after one
+  /// of size @p old_k. Collective.
   SlipDefects
   slip_defects(const ContactLayout             &face,
                const ContactState              &old_state,

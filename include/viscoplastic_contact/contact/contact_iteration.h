@@ -35,18 +35,18 @@ namespace Viscoplastic
     iterate(const unsigned int max_iterations);
 
   private:
-    /// A linear solve that shall bring the error below the tolerance aims at
-    /// this part of it.
+    /// A linear solve meant to be the last one aims at this fraction of the
+    /// tolerance.
     static constexpr double safety = 0.3;
-    /// After so many iterations that have not halved the error, it may be what
-    /// rounding leaves of the residual.
+    /// After so many iterations that have not halved the error, is_rounding()
+    /// is asked.
     static constexpr unsigned int stalled_after = 15;
 
     /// (1) Nonlinear Gauss-Seidel over the face nodes.
     void
     relax(const unsigned int n_sweeps);
 
-    /// The Gauss-Seidel step at one node; adds it to @p change.
+    /// Minimize J over the displacement of one node; adds to @p change.
     void
     relax_node(const unsigned int node, Vector<double> &change);
 
@@ -71,27 +71,26 @@ namespace Viscoplastic
     void
     correct();
 
-    /// (3) Go along w as far as J decreases, no slip further than to rest and
-    /// no node further than to its obstacle.
-    /// Returns the change of J.
+    /// (3) Line search: the step along w that minimizes J, no slip beyond its
+    /// reversal and no node beyond its obstacle. Returns the change of J.
     double
     search();
 
-    /// (4) Let the bulk follow the face.
+    /// (4) Solve for the interior with the face displacement as it is.
     void
     follow();
 
     void
     give_up();
 
-    /// What a solve without friction would have taken.
+    /// The estimated wall time of the same solve without friction, in seconds.
     double
     plain_seconds(const double seconds_to_finish) const;
 
     ContactSolve        &bulk;
     const ContactLayout &face;
     const double         tolerance;
-    /// The increment of the face, and what contact does there.
+    /// The displacement increment, multipliers and active sets of the face.
     Vector<double> &x;
     ContactState   &state;
     /// Coulomb's law of the step's own pressure; null where bounds are given.
@@ -100,32 +99,32 @@ namespace Viscoplastic
     const FaceMatrix         &matrix;
     std::vector<Tensor<2, 3>> diagonal, inverse_diagonal; // node by node
     std::vector<double>       rounding; // of steps of nodes, relative
-    /// With a law.
+    /// The bounds of Coulomb's law; absent where bounds are given.
     std::optional<CoulombBounds> bounds;
 
-    /// l - A u, the forces of the multipliers that fit it, and a correction, on
-    /// the face.
+    /// Face vectors: the residual l - A u, the forces of the multipliers
+    /// nearest to it, and the correction.
     Vector<double> residual, force, w;
-    /// The present one, and whether the last correction was made with the same
-    /// sticking points.
+    /// The truncation by the present active sets, and whether the last
+    /// correction had the same sticking points.
     FaceTruncation truncation;
     bool           same_sets = false;
-    /// The sets of the start, and where there are obstacles those of the last
+    /// The active sets of the start and, where there are obstacles, of the last
     /// correction.
     const std::vector<bool> first_sets;
     std::vector<bool>       last_sets;
-    /// Bound on the error and size of the solution in the energy norm.
+    /// In the energy norm: a bound on the error, and the norm of the solution.
     double error = 0., size = 0.;
-    /// The dual norm over its estimate when this was found too low.
+    /// The factor by which the estimated dual norm was found too low.
     double misjudged  = 1.;
     double best_error = std::numeric_limits<double>::max();
-    /// The iteration that has halved that last, and that before which rounding
-    /// is not to be asked for again.
+    /// The last iteration that has halved best_error, and the first in which
+    /// is_rounding() may be asked again.
     unsigned int last_gain = 0, next_question = stalled_after;
     /// The error of the start over the tolerance.
     double first_ratio = 0.;
-    /// Wall time of the corrections, and by how many powers of ten they were to
-    /// reduce their residuals.
+    /// Wall time of the corrections, and the sum of the powers of ten by which
+    /// they were to reduce residuals.
     double correction_seconds = 0., decades = 0.;
 
     ContactReport report;

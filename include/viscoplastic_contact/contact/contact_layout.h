@@ -32,8 +32,8 @@ namespace Viscoplastic
       unsigned int node;
       /// Independent slip directions, 1 or 2; of an obstacle 1.
       unsigned int n_tangents;
-      /// slip_i = map[i] . x over the face components of the node. Of an
-      /// obstacle: how far the node moves along the foundation's normal.
+      /// slip_i = map[i] . x with the face components x of the node; map[0] . x
+      /// of an obstacle is the displacement along the foundation's normal.
       std::array<Tensor<1, 3>, 2> map;
       /// Whether the point is an obstacle (the unilateral condition u_n <= g)
       /// instead of a point of friction.
@@ -54,16 +54,15 @@ namespace Viscoplastic
       }
     };
 
-    /// Position of each node's first component in face vectors, and the end.
+    /// Position of each node's first component in face vectors, and their size.
     std::vector<unsigned int> first_dof{0};
-    /// The points node by node, those of friction before obstacles, and each
-    /// node's first one, and the end.
+    /// The points node by node, friction before obstacles, and as compressed
+    /// rows the first point of each node and the number of points.
     std::vector<Point>        points;
     std::vector<unsigned int> first_point{0};
     /// Whether there are obstacles on any rank.
-    bool has_obstacles = false;
-    /// The ranks that share the face.
-    MPI_Comm communicator = MPI_COMM_SELF;
+    bool     has_obstacles = false;
+    MPI_Comm communicator  = MPI_COMM_SELF;
 
     unsigned int
     n_nodes() const
@@ -132,15 +131,15 @@ namespace Viscoplastic
         y[k] += factor * x[k];
     }
 
-    /// A sum over all ranks of what each adds to it. Collective, as the
-    /// next ones.
+    /// The sum of a number over the ranks of the face. Collective, as the next
+    /// ones.
     double
     sum(const double part) const
     {
       return Utilities::MPI::sum(part, communicator);
     }
 
-    /// Whether something holds on some rank.
+    /// Whether a condition is true on any rank.
     bool
     any(const bool here) const
     {
@@ -175,8 +174,8 @@ namespace Viscoplastic
   Tensor<1, 3>
   motion_with_slip(const ContactLayout::Point &point, const Tensor<1, 2> &slip);
 
-  /// A face vector as large as these slips, one a point; of the points of a
-  /// node the largest counts.
+  /// A face vector with, at each node, the smallest motion that has the largest
+  /// of the given slips (one a point) there.
   Vector<double>
   face_motion(const ContactLayout             &face,
               const std::vector<Tensor<1, 2>> &slips);
@@ -206,7 +205,7 @@ namespace Viscoplastic
     /// The active set: whether the point sticks, or touches the obstacle.
     std::vector<bool> sticks;
 
-    /// All points stick and nothing pulls at them.
+    /// At rest: all points stick, with zero multipliers.
     explicit ContactState(std::vector<double> bounds = {})
       : bound(std::move(bounds))
       , foundation_step(bound.size())
@@ -230,30 +229,30 @@ namespace Viscoplastic
       return Viscoplastic::slip(point, change) - foundation_step[p];
     }
 
-    /// s_c - d_c of an obstacle.
+    /// The penetration s_c - d_c of an obstacle, a length.
     double
     penetration(const unsigned int p) const
     {
       return slip[p][0] - bound[p];
     }
 
-    /// Whether a point slips against a force of friction.
+    /// Whether a point slips against friction that is not zero.
     bool
     slips(const ContactLayout::Point &point, const unsigned int p) const
     {
       return !point.is_obstacle && !sticks[p] && bound[p] > 0.;
     }
 
-    /// Whether a point takes the directions of its slip from its node: friction
-    /// that sticks, or a rigid obstacle that is touched.
+    /// Whether a point constrains its node along map: friction that sticks, or
+    /// a rigid obstacle in contact.
     bool
     blocks(const ContactLayout::Point &point, const unsigned int p) const
     {
       return sticks[p] && !point.gives_way();
     }
 
-    /// The multiplier of a point that does not block, which its slip s_c
-    /// determines: rho_c s_c/|s_c| or p(s_c - d_c); zero where nothing touches.
+    /// The multiplier of a point that does not constrain its node, from its
+    /// slip: rho_c s_c/|s_c| or p(s_c - d_c); zero without contact.
     Tensor<1, 2>
     multiplier_of_slip(const ContactLayout::Point &point,
                        const unsigned int          p) const;
@@ -272,11 +271,11 @@ namespace Viscoplastic
     /// same system (see CoulombLaw::tilt()): the system is not symmetric then.
     /// Empty where no bound does.
     std::vector<Tensor<2, 3>> tilt;
-    /// Whether the transposed system is meant: motions are multiplied by the
-    /// transposed tilts then, and equations are not.
+    /// Whether the transposed system is solved: tilt^T is applied to motions
+    /// instead of tilt to equations.
     bool transposed = false;
 
-    /// Whether another one blocks the same. Collective, as the next.
+    /// Whether both constrain the same directions. Collective, as the next.
     bool
     blocks_as(const FaceTruncation &other, const ContactLayout &face) const
     {

@@ -27,9 +27,9 @@ namespace Viscoplastic
                        const unsigned int  n_tangents,
                        const double        bound);
 
-  /// The multiplier of point @p p, friction or obstacle, and whether it sticks
-  /// or touches: its node moves by @p start + @p flexibility (@p force - map^T
-  /// multiplier).
+  /// Solve for the multiplier of one point @p p, friction or obstacle, and
+  /// whether it sticks or is in contact, of a node that moves by @p start + @p
+  /// flexibility (@p force - map^T multiplier).
   PointSolution
   solve_point(const ContactLayout &face,
               unsigned int         p,
@@ -69,7 +69,7 @@ namespace Viscoplastic
   struct Certificate
   {
     Vector<double> force;
-    /// sum of rho |s| - lambda . s over all ranks.
+    /// sum of rho |s| - lambda . s over all ranks, an energy.
     double                                             defect = 0.;
     std::vector<std::pair<unsigned int, Tensor<1, 2>>> replaced;
   };
@@ -104,7 +104,7 @@ namespace Viscoplastic
                   const std::vector<Tensor<2, 3>> &inverse_diagonal,
                   const double                     stiffest = 1e10);
 
-  /// The part of its spring at a node by which slipping points resist turning.
+  /// Stiffness against turning slip: rho/|s| (I - s s^T/|s|^2), limited.
   Tensor<2, 3>
   turning_spring(const ContactLayout             &face,
                  const unsigned int               node,

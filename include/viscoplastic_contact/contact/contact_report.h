@@ -12,8 +12,7 @@ namespace Viscoplastic
   struct ContactReport
   {
     /// Corrections of the active set iteration.
-    unsigned int iterations = 0;
-    /// Linear iterations of all of them.
+    unsigned int iterations        = 0;
     unsigned int linear_iterations = 0;
     /// Solves for a fixed point of the friction bounds, and the largest factor
     /// by which one has reduced their change; where bounds are solved for with
@@ -41,7 +40,7 @@ namespace Viscoplastic
     /// without contact.
     double seconds = 0., plain_seconds = 0.;
 
-    /// Count an earlier solve of the same step, too.
+    /// Add the counts and times of an earlier solve of the same step.
     void
     add_earlier(const ContactReport &earlier)
     {

@@ -8,8 +8,8 @@
 
 namespace Viscoplastic
 {
-  /// Sizes in the energy norm that are known before a solve: its rounding
-  /// error, and the norm of the last solution.
+  /// What is known before a solve, in the energy norm: its rounding error and
+  /// the norm of the last solution.
   struct SolutionScale
   {
     /// An error that rounding leaves in any case, and that counts as none: of
@@ -49,21 +49,22 @@ namespace Viscoplastic
     virtual ~ContactSolve() = default;
 
     const bool is_exact;
-    /// Not constant: the rounding error grows if solves find it to be larger.
+    /// Solves may raise its rounding error.
     SolutionScale scale;
 
-    /// The matrix for Gauss-Seidel sweeps whose effect move_face() has.
+    /// The matrix F of the face for Gauss-Seidel sweeps: move_face(w) changes
+    /// face_residual() by -F w.
     const FaceMatrix &
     face_matrix() const
     {
       return *matrix;
     }
 
-    /// l - A u on the face.
+    /// The residual l - A u on the face, a face vector of forces.
     virtual Vector<double>
     face_residual() const = 0;
 
-    /// Change the displacement of the face.
+    /// Add @p change, a face vector, to the displacement of the face.
     virtual void
     move_face(const Vector<double> &change) = 0;
 
@@ -144,8 +145,8 @@ namespace Viscoplastic
       return 0;
     }
 
-    /// Whether tilts have made the determinant of the system of correct()
-    /// negative, as far as that is known.
+    /// Whether the system of correct(), which tilts make nonsymmetric, has a
+    /// negative determinant, as far as that is known.
     virtual bool
     has_negative_determinant() const
     {

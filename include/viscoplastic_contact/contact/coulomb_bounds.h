@@ -33,7 +33,7 @@ namespace Viscoplastic
   class CoulombBounds
   {
   public:
-    /// All arguments stay in use. @p inverse_diagonal: of the face matrix.
+    /// @p inverse_diagonal: of the face matrix, by node. All stay in use.
     CoulombBounds(const CoulombLaw                &law,
                   const ContactLayout             &face,
                   const std::vector<Tensor<2, 3>> &inverse_diagonal);
@@ -60,7 +60,7 @@ namespace Viscoplastic
       n_stalls = 1;
     }
 
-    /// Find out what bounds miss at these pressures.
+    /// Compare the present bounds with those of the pressures in @p state.
     void
     measure(const ContactState &state);
 
@@ -82,8 +82,8 @@ namespace Viscoplastic
       return loss;
     }
 
-    /// If largest_loss() is 1 or more: words for messages that name the
-    /// friction and the node where it is largest.
+    /// If largest_loss() is at least 1: the friction and the node where it is
+    /// largest, in words for messages.
     const std::string &
     doubt() const
     {
@@ -119,7 +119,7 @@ namespace Viscoplastic
          const unsigned int n_corrections,
          ContactState      &state);
 
-    /// Moves of resting bounds so far.
+    /// The number of moves of bounds that rest in between.
     unsigned int
     n_moves() const
     {
@@ -140,7 +140,7 @@ namespace Viscoplastic
     const std::vector<Tensor<2, 3>> &inverse_diagonal;
     const double                     largest_coefficient;
 
-    /// What bounds miss, point by point and as an error.
+    /// Bounds of the present pressures minus bounds, by point, and as an error.
     std::vector<double> missing;
     double              missed = 0.;
 

@@ -98,7 +98,7 @@ namespace Viscoplastic
     /// The bound of friction is `given` + `coefficient` p.
     double                  given, coefficient;
     const NormalCompliance &compliance;
-    /// The force at which the node is now; zero where it does not touch.
+    /// The present normal force of the node; zero without contact.
     double present;
   };
 

@@ -16,7 +16,7 @@ namespace Viscoplastic
   class FaceMatrix
   {
   public:
-    /// All nodes in one stage.
+    /// Of nodes that are all swept in one stage.
     explicit FaceMatrix(const ContactLayout &face);
     virtual ~FaceMatrix() = default;
 
@@ -38,8 +38,8 @@ namespace Viscoplastic
              const Tensor<1, 3> &change,
              Vector<double>     &r) const = 0;
 
-    /// At the end of a stage: r := r - F (changes that other ranks have made in
-    /// it); @p change: those of this rank. Collective.
+    /// At the end of a stage subtract F times the changes of other ranks in it
+    /// from r; @p change has those of this rank. Collective.
     virtual void
     subtract_changes_elsewhere(const unsigned int /*stage*/,
                                const Vector<double> & /*change*/,
@@ -52,13 +52,12 @@ namespace Viscoplastic
   };
 
 
-  /// Fill the diagonal of a node's block behind its entries, the leading n x n,
-  /// by a stiffness of their size, so that it is as regular in all units.
+  /// Pad a leading n x n block by a diagonal of the size of its entries.
   void
   pad_block(Tensor<2, 3> &block, const unsigned int n);
 
 
-  /// A dense one: the Schur complement of the bulk.
+  /// A dense face matrix: the Schur complement of the bulk.
   class DenseFaceMatrix : public FaceMatrix
   {
   public:

@@ -20,9 +20,9 @@ namespace Viscoplastic
   };
 
 
-  /// The step that minimizes J along the correction @p w, of at most 2 and of
-  /// what no obstacle ends; 1 if that is as good up to inexact linear solves, 0
-  /// if there is no descent.
+  /// The step that minimizes J along the correction @p w, at most 2 and as far
+  /// as the obstacles allow; 1 if that is as good to the accuracy of the linear
+  /// solve, 0 without descent.
   SearchResult
   search_along(ContactSolve         &bulk,
                const ContactLayout  &face,
@@ -63,7 +63,7 @@ namespace Viscoplastic
                  Vector<double>       &change);
 
 
-  /// A correction that is solved for with kinks of J in view.
+  /// A correction with nodes held at kinks of J, and its line search.
   struct KinkStep
   {
     Vector<double> correction;

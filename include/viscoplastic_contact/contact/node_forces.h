@@ -15,12 +15,11 @@ namespace Viscoplastic
   ///     rho_c = g_c + sum_k mu_ck p_k
   struct CoulombCoefficients
   {
-    /// g_c, point by point; of no meaning for obstacles.
+    /// g_c in rho_c = g_c + sum_k mu_ck p_k, by friction point.
     std::vector<double> given;
-    /// mu_ck, in the order of the obstacles of the node.
+    /// mu_ck, by friction point and obstacle k of its node.
     std::vector<std::vector<double>> of_pressure;
 
-    /// The bound of a point of friction at the pressures of @p state.
     double
     bound(const ContactLayout &face,
           const ContactState  &state,
@@ -47,14 +46,15 @@ namespace Viscoplastic
   class NodeForces
   {
   public:
-    /// All arguments stay in use. @p law: null where bounds are given.
+    /// @p law: null where bounds are given. All arguments stay in use.
     NodeForces(const ContactLayout       &face,
                unsigned int               node,
                const ContactState        &state,
                const CoulombCoefficients *law);
 
-    /// Set the node's multipliers, and with a law its bounds, in @p state to
-    /// what fits @p residual best. Returns what is missing of it.
+    /// Set the node's multipliers in @p state, with a law also its bounds, to
+    /// the admissible ones whose force is nearest to @p residual (least
+    /// squares). Returns the rest of the residual.
     Tensor<1, 3>
     fit(const Tensor<1, 3> &residual, ContactState &state) const;
 
@@ -70,7 +70,6 @@ namespace Viscoplastic
     std::vector<double>
     pressures(const Tensor<1, 3> &residual) const;
 
-    /// Whether the node can move.
     bool
     is_free() const
     {
@@ -92,14 +91,14 @@ namespace Viscoplastic
       std::vector<std::vector<double>> of_spring;
     };
 
-    /// Those of what holds the node: changes of its multipliers of least norm
-    /// that make up for those of force and springs and keep friction at the
-    /// bounds it has reached.
+    /// The changes of least norm of constraint multipliers that balance a
+    /// change of force and spring pressures and keep friction at bounds that
+    /// are reached.
     PressureChanges
     changes_of_what_holds() const;
 
-    /// Their equations, for the multipliers in @p columns: the force, then the
-    /// bounds of the points in @p limits.
+    /// The equations of these multipliers, one a column: balance of the force,
+    /// then friction at the bounds of the points in @p limits.
     FullMatrix<double>
     equations(const std::vector<Column>       &columns,
               const std::vector<unsigned int> &limits) const;
@@ -120,7 +119,7 @@ namespace Viscoplastic
              state.slip[p].norm() > 0.;
     }
 
-    /// Whether a point is one of those that hold the node here.
+    /// Whether a point's multiplier is an unknown of fit().
     bool
     takes_part(const unsigned int p) const
     {
@@ -129,33 +128,33 @@ namespace Viscoplastic
              (law != nullptr && !point.is_obstacle && !slips(p));
     }
 
-    /// Whether an obstacle presses by how far the node is in it.
+    /// Whether an obstacle is compliant and in contact.
     bool
     is_spring(const unsigned int o) const
     {
       return state.sticks[o] && face.points[o].gives_way();
     }
 
-    /// What a slipping point has of its bound, and any point of its bound,
-    /// whatever the obstacles that take part press.
+    /// The part of a point's friction bound that does not depend on the
+    /// pressures to be found.
     double
     given_bound(unsigned int p) const;
 
-    /// The same with these.
+    /// The friction bound of point @p p for these multipliers of the node.
     double
     bound(unsigned int p, const std::vector<Tensor<1, 2>> &multipliers) const;
 
-    /// Move the multipliers of the node to the nearest ones that the laws
-    /// allow.
+    /// Project the multipliers of the node onto the admissible set: |lambda_c|
+    /// <= rho_c, p_k >= 0.
     void
     clip(std::vector<Tensor<1, 2>> &multipliers) const;
 
-    /// The forces of those that take part, of slipping points as far as it
-    /// follows from pressures, in the directions that are held.
+    /// The force of the multipliers in constrained directions, with that of
+    /// slipping points as far as it depends on pressures.
     Tensor<1, 3>
     force(const std::vector<Tensor<1, 2>> &multipliers) const;
 
-    /// G^+ x for the matrix of these forces.
+    /// G^+ x with the Gram matrix G of the forces of unit multipliers.
     Tensor<1, 3>
     invert_gram(const Tensor<1, 3> &x) const;
 
@@ -164,16 +163,16 @@ namespace Viscoplastic
     const ContactState        &state;
     const CoulombCoefficients *law;
 
-    /// The force of a unit of pressure, obstacle by obstacle.
+    /// The node force of unit pressure and its friction, by obstacle.
     std::vector<Tensor<1, 3>> push;
-    /// Onto the directions that are held, and their number.
+    /// The projector onto the constrained directions, and their number.
     Tensor<2, 3> held;
     unsigned int n_held = 0;
-    /// How much more pressures count than friction in what is least.
+    /// The weight of pressures relative to friction in the least norm.
     double pressure_scale;
-    /// Whether an obstacle here gives way.
+    /// Whether an obstacle of the node is compliant.
     bool any_springs;
-    /// Eigenvalues and vectors of G with this, and the largest without.
+    /// Eigenvalues and vectors of G, and the largest without that weight.
     std::array<std::pair<double, Tensor<1, 3>>, 3> gram;
     double                                         largest;
   };

@@ -19,7 +19,7 @@ namespace Viscoplastic
       pieces.push_back({stiffness, exponent});
     }
 
-    /// Whether there is no piece that gives way.
+    /// Whether the obstacle is rigid: no compliant piece has been added.
     bool
     is_rigid() const
     {
@@ -36,7 +36,7 @@ namespace Viscoplastic
       return sum;
     }
 
-    /// p'(w).
+    /// p'(w) in force per length.
     double
     slope(const double w) const
     {
@@ -48,7 +48,7 @@ namespace Viscoplastic
       return sum;
     }
 
-    /// int_0^w p.
+    /// The energy int_0^w p.
     double
     energy(const double w) const
     {
@@ -64,8 +64,8 @@ namespace Viscoplastic
     double
     penetration(const double p) const;
 
-    /// The penetration at which a node stays that moves by @p flexibility per
-    /// unit of force, and without one to @p free_w > 0.
+    /// The penetration w with w = @p free_w - @p flexibility p(w), for a
+    /// penetration @p free_w > 0 without contact force.
     double
     penetration(const double flexibility, const double free_w) const;
 

@@ -46,7 +46,7 @@ namespace Viscoplastic
                                Vector<double>       &r) const override;
 
   private:
-    /// Order the nodes in stages.
+    /// Divide nodes into stages: ranks that couple are never in one.
     void
     make_stages();
 
@@ -62,7 +62,7 @@ namespace Viscoplastic
     std::vector<unsigned int> columns;
     std::vector<double>       values;
     std::vector<Coupling>     elsewhere;
-    /// Of this rank, and of the entries of others that couple with them.
+    /// The changes of this rank's entries in a stage, and of coupled ghosts.
     mutable LinearAlgebra::distributed::Vector<double> changes;
   };
 } // namespace Viscoplastic

@@ -7,30 +7,30 @@
 
 namespace Viscoplastic
 {
-  /// A body that only contact holds, as statics sees it: the rigid motions that
-  /// are left to it, and the work of the loads on them.
+  /// A body whose rigid motions only contact constrains: these motions, and the
+  /// work of the loads on them.
   struct HeldBody
   {
     const ContactLayout &face;
     /// A basis of the free rigid motions, each as a face vector; in a scale in
     /// which no motion is much larger than the others.
     std::vector<Vector<double>> motions;
-    /// The work of the loads on each of them, and the largest sum of the parts
-    /// of such work without their signs.
+    /// The work of the loads on each motion, and its largest sum of absolute
+    /// values over the degrees of freedom.
     std::vector<double> load;
     double              load_size = 0.;
   };
 
 
-  /// Whether forces of contact can balance loads, with the proof.
+  /// Whether admissible contact forces balance the loads, with the proof.
   struct Statics
   {
     bool is_balanced = true;
-    /// Balanced: a force at each obstacle that helps to do so.
+    /// If balanced: an equilibrium's normal force at each obstacle.
     std::vector<double> pressures;
-    /// Not balanced: a rigid motion, in the basis of HeldBody::motions, that
-    /// enters no obstacle and on which the loads do more work than friction
-    /// can take.
+    /// If not: a rigid motion, in the basis of HeldBody::motions, without
+    /// penetration, on which the loads do more work than friction can
+    /// dissipate.
     std::vector<double> motion;
   };
 

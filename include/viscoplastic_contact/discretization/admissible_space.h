@@ -59,8 +59,8 @@ namespace Viscoplastic
     const DoFHandler<dim> &dof_handler;
     const Scene<dim>      &scene;
     const MPI_Comm         communicator;
-    /// The mapping that includes 2 pi r for bodies of revolution: FEValues made
-    /// with it have the weights of integrals over the body.
+    /// The mapping whose JxW are weights of integrals over the body: with 2 pi
+    /// r for bodies of revolution.
     const Mapping<dim> &mapping;
     /// Normals of the curved boundaries that are in contact with another body;
     /// null if there are none.
@@ -68,8 +68,8 @@ namespace Viscoplastic
     /// The mortar interpolation of each secondary boundary, see
     /// mortar_interpolation().
     const std::map<types::boundary_id, MortarRows> mortar_rows;
-    /// Relevant are those at owned cells and their neighbors, and opposite of
-    /// them.
+    /// Degrees of freedom; relevant ones are at owned cells, their neighbors,
+    /// and opposite of these on another body.
     const IndexSet owned, relevant;
     /// The position among the relevant ones of one more unknown, where there
     /// is: eps_zz axial_length in generalized plane strain, by how much a slice
@@ -108,7 +108,7 @@ namespace Viscoplastic
       return axial ? u[*axial] / axial_length : 0.;
     }
 
-    /// The position of that unknown among the owned ones, if it is.
+    /// The position of the axial unknown among the owned ones, if it is.
     std::optional<std::size_t>
     owned_axial() const
     {
@@ -117,8 +117,8 @@ namespace Viscoplastic
       return {};
     }
 
-    /// The degrees of freedom that the form couples in a cell: those of its
-    /// nodes, and the axial ones.
+    /// The rows and columns of a cell's matrix: the degrees of freedom of its
+    /// nodes, and the axial one.
     void
     get_dofs(const typename DoFHandler<dim>::active_cell_iterator &cell,
              std::vector<types::global_dof_index>                 &dofs) const
@@ -139,13 +139,13 @@ namespace Viscoplastic
     void
     make_sparsity_pattern(TrilinosWrappers::SparsityPattern &pattern) const;
 
-    /// Add a Cartesian cell matrix, which changes, to a matrix in frames.
+    /// Add a Cartesian cell matrix, which changes, to one in nodal frames.
     void
     add_cell_matrix(const std::vector<types::global_dof_index> &dofs,
                     FullMatrix<double>                         &cell_matrix,
                     DistributedMatrix                          &matrix) const;
 
-    /// Hanging nodes only, in Cartesian components.
+    /// The constraints of hanging nodes alone, in Cartesian components.
     const AffineConstraints<double> &
     cartesian_hanging_nodes() const
     {
@@ -177,9 +177,9 @@ namespace Viscoplastic
     to_cartesian(const DistributedVector &in_frames,
                  DistributedVector       &ghosted) const;
 
-    /// Take off a Cartesian vector what lies opposite, at the nodes of
-    /// secondary sides: displacements become those relative to the other body.
-    /// Collective.
+    /// Make the displacement at nodes of secondary boundaries that relative to
+    /// the other body: subtract its mortar interpolation. Cartesian, with
+    /// ghosts. Collective.
     void
     make_relative(DistributedVector &ghosted) const;
 
@@ -192,7 +192,7 @@ namespace Viscoplastic
         hanging_cartesian.distribute(cartesian);
     }
 
-    /// The inverse, into a vector of owned entries, zero at hanging nodes.
+    /// The inverse of to_cartesian(): owned entries, zero at hanging nodes.
     void
     to_frames(const DistributedVector &ghosted,
               DistributedVector       &in_frames) const;
@@ -250,7 +250,6 @@ namespace Viscoplastic
       return is_excluded;
     }
 
-    /// Set the entries that are no unknowns to zero.
     void
     restrict_to_unknowns(DistributedVector &in_frames) const
     {
@@ -321,14 +320,14 @@ namespace Viscoplastic
     make_hanging_nodes_in_frames();
     void
     make_couplings();
-    /// v := v + factor C Q u at owned nodes, with u Cartesian; with Q u alone
-    /// also in directions in which other conditions hold the node.
+    /// v := v + factor C Q u at owned nodes, u Cartesian: the mortar
+    /// interpolation Q u in the coupled directions C, or in all of them.
     void
     add_opposite(const double             factor,
                  const DistributedVector &ghosted_u,
                  DistributedVector       &v,
                  const bool               also_where_held = false) const;
-    /// Whether a node of a cell has something opposite.
+    /// Whether a node of a cell is coupled to another body.
     bool
     is_coupled(const std::vector<types::global_dof_index> &dofs) const
     {
@@ -339,12 +338,11 @@ namespace Viscoplastic
           return true;
       return false;
     }
-    /// Replace a cell matrix by that of the jumps, in the degrees of freedom of
-    /// the cell and opposite.
+    /// Replace a cell matrix by that in the jumps across interfaces, whose
+    /// degrees of freedom include those opposite.
     void
     couple(std::vector<types::global_dof_index> &dofs,
            FullMatrix<double>                   &cell_matrix) const;
-    /// Rotate a cell matrix into the frames of its nodes.
     void
     rotate(const std::vector<types::global_dof_index> &dofs,
            FullMatrix<double>                         &cell_matrix) const;
@@ -354,7 +352,7 @@ namespace Viscoplastic
     /// numbers with ghosts, at the first entry of each node. Collective.
     DistributedVector
     number_parts(const std::vector<unsigned int> &part_of_coarse_cell);
-    /// One of the rigid motions of a part, or of all, in frames. Collective.
+    /// A rigid motion of one part or of all, in nodal frames. Collective.
     DistributedVector
     rigid_motion(const unsigned int motion, const unsigned int part) const;
     /// The mean position of the nodes. Collective.
@@ -373,13 +371,12 @@ namespace Viscoplastic
     /// that move by themselves, translations and rotations times `radius`, the
     /// largest distance from the center.
     std::vector<std::vector<double>> free_motions;
-    /// Of each owned node; empty where there is one part.
+    /// The part of the body of each owned node; empty where there is one part.
     std::vector<unsigned int> part_of_node;
     double                    radius        = 0.;
     bool                      needs_springs = false;
     AffineConstraints<double> hanging_cartesian, hanging_in_frames;
-    /// Whether any rank has hanging nodes.
-    bool any_hanging;
+    bool                      any_hanging;
     /// Position of the first owned entry among the relevant ones.
     std::size_t first_owned;
     /// Frame 0 is that of a node without conditions.
@@ -397,11 +394,11 @@ namespace Viscoplastic
     std::vector<Point<dim>> node_position;
 
     std::vector<Coupling> couplings;
-    /// Of a node that has or hangs on nodes that have them: couplings and
-    /// weights.
+    /// The couplings of a node, with weight 1, or of the parents that it hangs
+    /// on, with theirs; by position of the node.
     std::map<std::size_t, std::vector<std::pair<std::size_t, double>>>
       couplings_of_node;
-    /// Which nodes these are, by position / dim.
+    /// Whether a node is in couplings_of_node, by position / dim.
     std::vector<bool> coupled_nodes;
   };
 } // namespace Viscoplastic

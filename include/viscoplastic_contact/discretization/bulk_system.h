@@ -13,7 +13,7 @@ namespace Viscoplastic
   NodeHierarchy
   make_node_hierarchy(const AdmissibleSpace<dim> &space);
 
-  /// A matrix on a space as solvers see it.
+  /// The matrix and the unknowns of a space, for linear solvers.
   template <int dim>
   BulkSystem
   make_bulk_system(const AdmissibleSpace<dim> &space,

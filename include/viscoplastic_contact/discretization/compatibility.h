@@ -13,13 +13,13 @@ namespace Viscoplastic
   template <int dim>
   struct CompatibilityViolation
   {
-    /// Relative to the loads.
+    /// The largest nodal imbalance over that of the loads.
     double relative = 0.;
     /// The node with the largest force that nothing balances, and the
     /// boundaries that it is on; none inside of the body.
     Point<dim>                   position;
     std::set<types::boundary_id> boundaries;
-    /// Whether it is rather the force across the section.
+    /// Whether the imbalance is that of the axial force.
     bool is_axial = false;
   };
 
@@ -46,7 +46,7 @@ namespace Viscoplastic
   struct DisplacementJump
   {
     double t = 0., size = 0.;
-    /// The largest displacement that is prescribed anywhere.
+    /// The largest prescribed displacement, a length.
     double                       largest = 0.;
     Point<dim>                   position;
     std::set<types::boundary_id> boundaries;

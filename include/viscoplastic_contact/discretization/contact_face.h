@@ -35,15 +35,14 @@ namespace Viscoplastic
       return face_restriction.face();
     }
 
-    /// The restriction of vectors in frames to face vectors.
     const FaceRestriction &
     restriction() const
     {
       return face_restriction;
     }
 
-    /// Frictional boundaries none of whose nodes can slip, because other
-    /// conditions hold them all. The same on all ranks.
+    /// Frictional boundaries all of whose nodes other conditions constrain. The
+    /// same on all ranks.
     std::set<types::boundary_id>
     held_boundaries() const;
 
@@ -119,34 +118,31 @@ namespace Viscoplastic
       return any_computed_pressure;
     }
 
-    /// Whether there are obstacles on any rank.
     bool
     has_obstacles() const
     {
       return any_obstacles;
     }
 
-    /// Whether some of them give way on any rank.
+    /// Whether there are compliant obstacles (normal compliance) on any rank.
     bool
     gives_way() const
     {
       return any_gives_way;
     }
 
-    /// Let a state at rest see the obstacles as they are at @p u (in frames) at
-    /// time t: their distance, and the force of those that give way.
-    /// Collective.
+    /// Set the distance of each obstacle, and the force of compliant ones, in a
+    /// state at rest at @p u (in nodal frames) and time t. Collective.
     void
     set_obstacles(const double             t,
                   const DistributedVector &u,
                   ContactState            &state) const;
 
-    /// Whether the body at @p u (in frames) is beyond the gap at time t
-    /// somewhere between the nodes, where nothing keeps it out. Collective.
+    /// Whether @p u (in nodal frames) penetrates the foundation at time t
+    /// between the nodes, where it is not constrained. Collective.
     bool
     closes_between_nodes(const double t, const DistributedVector &u) const;
 
-    /// Whether bounds() depends on time.
     bool
     bounds_depend_on_time() const
     {
@@ -197,7 +193,6 @@ namespace Viscoplastic
       return area_shares.empty() ? 1. : area_shares.at(id)[point];
     }
 
-    /// The two on the foundation of one boundary.
     struct BoundaryForces
     {
       Tensor<1, dim> friction, contact;
@@ -209,7 +204,7 @@ namespace Viscoplastic
     std::map<types::boundary_id, BoundaryForces>
     forces_by_boundary(const ContactState &state) const;
 
-    /// The sum of all of them that act on rigid foundations, not on other
+    /// The sum of forces_by_boundary() on rigid foundations, not on other
     /// bodies. Collective.
     Tensor<1, dim>
     resultant_on_foundations(const ContactState &state) const
@@ -242,9 +237,9 @@ namespace Viscoplastic
     density(const ContactState &state,
             const bool          of_friction_alone = false) const;
 
-    /// The inverse where a node has one point, for a face on a new mesh; at
-    /// corners, where the density is that of all points, zero.
-    /// @p ghosted_density is Cartesian.
+    /// The multipliers of a density (Cartesian, with ghosts), for a face on a
+    /// new mesh; zero at nodes with several points, which it does not tell
+    /// apart.
     std::vector<Tensor<1, 2>>
     multipliers(const DistributedVector &ghosted_density) const;
 
@@ -281,7 +276,7 @@ namespace Viscoplastic
       double       value;
     };
 
-    /// How far the other body is from a node along the normal, at first.
+    /// The initial distance of the other body from a node along the normal.
     double
     initial_distance(const Node &node, const Tensor<1, dim> &normal) const;
 
@@ -304,13 +299,12 @@ namespace Viscoplastic
                const bool                       of_obstacles = false,
                const std::vector<double> *const slip_rates   = nullptr) const;
 
-    const AdmissibleSpace<dim> &space;
-    FaceRestriction             face_restriction;
-    std::vector<Node>           nodes;
-    /// Boundary ids of each point.
+    const AdmissibleSpace<dim>                  &space;
+    FaceRestriction                              face_restriction;
+    std::vector<Node>                            nodes;
     std::vector<std::vector<types::boundary_id>> boundary_ids;
-    /// Of each boundary, which part of the area of each point is on it; empty
-    /// where there are no two of them.
+    /// By boundary, the fraction of each point's area that lies on it; empty
+    /// with one contact boundary.
     std::map<types::boundary_id, std::vector<double>> area_shares;
     std::vector<Sample>                               samples;
     std::vector<Share>                                shares;
@@ -318,7 +312,7 @@ namespace Viscoplastic
     /// no rank has points.
     std::shared_ptr<const Utilities::MPI::Partitioner> numbers;
     std::vector<double>                                point_weights;
-    /// int phi over the other sides, at first components.
+    /// int phi over the primary boundaries, at first components of nodes.
     LinearAlgebra::distributed::Vector<double> other_side_weights;
     bool bounds_vary, any_obstacles = false, any_gives_way = false,
                       any_computed_pressure = false, any_rate = false;

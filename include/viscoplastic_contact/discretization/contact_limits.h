@@ -17,16 +17,14 @@ namespace Viscoplastic
     /// Collective.
     explicit ContactTension(const StressSpace<dim> &stress_space);
 
-    /// Area of the pieces with bilateral contact.
     double
     area() const
     {
       return total_area;
     }
 
-    /// The part of it under a tensile normal stress of more than a thousandth
-    /// of the largest stress there (Frobenius norm), by the mean stress of the
-    /// cells behind. Collective.
+    /// The area where the normal stress (cell means) is tensile by more than a
+    /// thousandth of the largest stress there (Frobenius norm). Collective.
     double
     tension_area(const State<dim> &state) const;
 

@@ -39,8 +39,8 @@ namespace Viscoplastic
   class Discretization
   {
   public:
-    /// Without the matrix, which costs most. Collective. Throws ExcMessage if
-    /// the scene does not fit the mesh.
+    /// Make all but the matrix, which costs most. Throws ExcMessage if the
+    /// scene does not fit the mesh. Collective.
     Discretization(const DoFHandler<dim> &dof_handler, const Scene<dim> &scene);
 
     /// Make the matrix. Collective.
@@ -81,15 +81,15 @@ namespace Viscoplastic
     StressSpace<dim> stress_space;
     FlowLaws<dim>    laws;
     Loads<dim>       loads;
-    /// Between the body and the ground; null if there are none.
+    /// The springs between body and ground; null if there are none.
     std::unique_ptr<Springs<dim>> springs;
     /// Tension at bilateral contact; null if there is none.
     std::unique_ptr<ContactTension<dim>> tension;
     /// The contact points; null without friction and unilateral contact.
     std::unique_ptr<ContactFace<dim>> face;
-    /// Null where nothing holds bodies to each other.
+    /// The traction of glued and bilateral interfaces; null if there are none.
     std::unique_ptr<HeldTraction<dim>> held_traction;
-    /// Null without contact between bodies.
+    /// The sliding of interfaces; null without contact between bodies.
     std::unique_ptr<InterfaceSlide<dim>> slide;
     /// A lower bound on the number of time steps on this mesh.
     unsigned int n_steps;

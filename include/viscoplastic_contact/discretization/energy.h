@@ -6,7 +6,7 @@
 
 namespace Viscoplastic
 {
-  /// Integrals over the stress of a state and of the step that led to it.
+  /// Integrals of the stress of a state, and of the dissipation in its step.
   template <int dim>
   struct StressSummary
   {
@@ -34,7 +34,7 @@ namespace Viscoplastic
     double thermal_work = 0.;
   };
 
-  /// Collective. Without a step (initial state), give the same state twice.
+  /// @p before: the state before the step, or @p state itself. Collective.
   template <int dim>
   StressSummary<dim>
   summarize_stress(const FlowLaws<dim> &laws,
@@ -45,7 +45,6 @@ namespace Viscoplastic
   /// led to a state.
   struct CellEnergies
   {
-    /// The mean of the strain and the stress.
     SymmetricTensor<2, 3> mean_strain, mean_stress;
     /// Integrals, see StressSummary.
     double irreversible_energy = 0., viscous_dissipation = 0.,

@@ -85,7 +85,7 @@ namespace Viscoplastic
                  0.;
       }
 
-      /// The strain that laws know: without that of the temperature.
+      /// The mechanical strain eps - alpha (T - T_0) I, on which laws depend.
       SymmetricTensor<2, 3>
       mechanical(SymmetricTensor<2, 3> strain,
                  const std::size_t     cell,
@@ -123,14 +123,14 @@ namespace Viscoplastic
       std::vector<LawPoint>     uniform; // a material
     };
 
-    /// Without history variables: of laws before the first step.
+    /// The laws at time t before the first step: history variables are zero.
     AtTime
     at(const double t) const
     {
       return AtTime(*this, t, nullptr);
     }
 
-    /// With these history variables, which stay in use.
+    /// The laws at time t with these history variables, which stay in use.
     AtTime
     at(const double t, const IrreversibleStress &history) const
     {
@@ -151,9 +151,8 @@ namespace Viscoplastic
     struct Entry
     {
       const ViscoplasticLaw *law;
-      /// Of the parameters.
-      bool varies_in_space, varies_in_time;
-      /// Of the rate, at a temperature that changes.
+      bool                   varies_in_space, varies_in_time;
+      /// Whether the rate varies with a temperature that changes.
       bool follows_temperature;
     };
 
@@ -166,7 +165,7 @@ namespace Viscoplastic
   };
 
 
-  /// G at a state, and what it means for a step from there.
+  /// G at a state, and the stability limit that follows.
   struct FlowRate
   {
     /// G at each sample.
@@ -196,9 +195,9 @@ namespace Viscoplastic
 
 
 
-  /// Backward Euler at all samples: z_n for the strains of @p ghosted_u, from
-  /// @p start. Elastic cells keep their z. Throws on all ranks if there is no
-  /// solution at a sample of one. Collective.
+  /// Backward Euler at all samples: z_n for the strains of @p ghosted_u by
+  /// Newton's method from @p start; elastic cells keep their z. Throws on all
+  /// ranks where there is no solution. Collective.
   template <int dim>
   IrreversibleStress
   implicit_irreversible_stress(const typename FlowLaws<dim>::AtTime &laws,

@@ -14,13 +14,13 @@ namespace Viscoplastic
   template <int dim>
   struct Forces
   {
-    /// u of the state.
+    /// u of the state, in nodal frames.
     DistributedVector u;
     /// L(t, .), and its resultant.
     Load<dim> load;
-    /// a(u, .), and with (z, eps(.)) added.
+    /// a(u, .) and a(u, .) + (z, eps(.)).
     DistributedVector elastic, internal;
-    /// 1/2 a(u, u), and (z, eps(u)).
+    /// 1/2 a(u, u) and (z, eps(u)).
     double strain_energy, irreversible_work;
   };
 
@@ -38,7 +38,7 @@ namespace Viscoplastic
   struct EnergyRounding
   {
     double size;
-    /// Whether the strains of the body are no more than that.
+    /// Whether the strain energy of the body is within it.
     bool is_all_of_the_strain;
   };
 
@@ -83,8 +83,7 @@ namespace Viscoplastic
     /// max |lambda_c - rho_c s_c/|s_c||/rho_c where slipping.
     double slip_misalignment = 0.;
     /// max |s_c| where slipping.
-    double max_slip = 0.;
-    /// Areas of sticking and slipping points.
+    double max_slip   = 0.;
     double stick_area = 0., slip_area = 0.;
     /// sum_c lambda_c . s_c of the step.
     double dissipation = 0.;
@@ -101,8 +100,8 @@ namespace Viscoplastic
     Tensor<1, dim> force;
     /// The area of the points that touch, and of all.
     double contact_area = 0., area = 0.;
-    /// The largest p_c over its area, distance, and penetration of foundations
-    /// that give way.
+    /// The largest pressure p_c/area, gap, and penetration of compliant
+    /// foundations.
     double max_pressure = 0., max_gap = 0., max_penetration = 0.;
     /// Work of a foundation that moves along its normal: - sum_c p_c n_c . du_c
     /// with the mean of the multipliers before and after, which is that on the

@@ -17,9 +17,9 @@ namespace Viscoplastic
                    const std::set<types::boundary_id> &ids);
 
 
-  /// What holds two bodies together where no contact point does: the traction
-  /// of glue, and the normal one of bilateral contact. It is the force that the
-  /// equations of the jumps' prescribed components are out of balance by.
+  /// The traction at interfaces without contact points: all of it where bodies
+  /// are glued, the normal part in bilateral contact. It is the residual of the
+  /// equations of the prescribed jumps.
   template <int dim>
   class HeldTraction
   {
@@ -27,7 +27,6 @@ namespace Viscoplastic
     /// The argument stays in use. Collective.
     explicit HeldTraction(const AdmissibleSpace<dim> &space);
 
-    /// Whether a scene has it.
     static bool
     is_needed(const Scene<dim> &scene);
 
@@ -41,7 +40,7 @@ namespace Viscoplastic
 
   private:
     const AdmissibleSpace<dim> &space;
-    /// Of both sides.
+    /// int phi over both sides of the interfaces.
     LinearAlgebra::distributed::Vector<double> weights;
   };
 } // namespace Viscoplastic

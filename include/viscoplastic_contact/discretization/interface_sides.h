@@ -144,8 +144,8 @@ namespace Viscoplastic
       return result;
     }
 
-    /// Where to look for faces: of flat sides in the plane across the normal,
-    /// at any distance.
+    /// The key of a place in the search: for flat sides its projection onto the
+    /// interface plane.
     Point<dim>
     place_of(const Point<dim> &x) const
     {
@@ -189,8 +189,8 @@ namespace Viscoplastic
       return BoundingBox<dim>(places);
     }
 
-    /// Whether a face of the other side looks towards a place with this
-    /// normal, and is not seen from behind or edgeways.
+    /// Whether a face of the other side has an outward normal against this one:
+    /// a cosine below -0.2. Always, of flat sides.
     bool
     faces(const Tensor<1, dim> &normal, const SurfaceFace<dim> &other) const
     {

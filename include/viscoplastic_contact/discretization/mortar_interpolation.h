@@ -82,8 +82,8 @@ namespace Viscoplastic
     double                             softness = 0.;
   };
 
-  /// For places on the faces of the secondary boundary that this rank owns.
-  /// @p softness is asked for owned faces of the primary one. Collective.
+  /// The places opposite to points on owned faces of the secondary boundary; @p
+  /// softness is evaluated on owned primary faces. Collective.
   template <int dim>
   std::vector<PlaceOpposite<dim>>
   places_opposite(const DoFHandler<dim>                  &dof_handler,

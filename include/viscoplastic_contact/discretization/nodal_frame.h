@@ -63,10 +63,8 @@ namespace Viscoplastic
     std::array<Tensor<1, dim>, dim>     condition_direction;
     std::array<types::boundary_id, dim> condition_boundary;
     std::array<unsigned int, dim>       condition_component;
-    /// Friction points at the node.
-    std::vector<FrictionPlane<dim>> planes;
-    /// Obstacles of unilateral contact there.
-    std::vector<Obstacle<dim>> obstacles;
+    std::vector<FrictionPlane<dim>>     planes;
+    std::vector<Obstacle<dim>>          obstacles;
   };
 
 

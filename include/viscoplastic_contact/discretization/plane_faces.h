@@ -184,7 +184,6 @@ namespace Viscoplastic
 
 
 
-  /// The reference coordinates of a place on a face.
   template <int d>
   Point<d>
   reference_position(const PlaneFace<d> &face, const Point<d> &x)

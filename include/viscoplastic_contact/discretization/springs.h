@@ -21,8 +21,8 @@ namespace Viscoplastic
     /// Throws ExcMessage where a stiffness is negative.
     explicit Springs(const AdmissibleSpace<dim> &space);
 
-    /// The integral of the trace of K: what the springs are beside the sum of
-    /// the diagonal of a matrix. Collective.
+    /// The integral of the trace of K, comparable with the trace of a stiffness
+    /// matrix. Collective.
     double
     total_stiffness() const
     {

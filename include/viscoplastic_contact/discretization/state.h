@@ -8,8 +8,8 @@
 
 namespace Viscoplastic
 {
-  /// All that a step changes. A step is a pure function of an accepted state, a
-  /// time and a step size: it makes a new State and leaves the old one alone.
+  /// The unknowns at one time. A step is a pure function: it makes a new State
+  /// from an accepted one, a time and a step size.
   template <int dim>
   struct State
   {

@@ -30,7 +30,7 @@ namespace Viscoplastic
                    const AffineConstraints<double> &hanging_nodes,
                    const Scene<dim>                &scene);
 
-    /// That of a locally relevant node, by its first degree of freedom.
+    /// The normal at a locally relevant node, by its first degree of freedom.
     Tensor<1, dim>
     at(const types::global_dof_index first_dof) const;
 
@@ -45,6 +45,11 @@ namespace Viscoplastic
     reach(const SurfaceFace<dim> &face);
 
   private:
+    /// Set normals and lifts of hanging nodes from their parents. Collective.
+    void
+    lift(const std::map<types::global_dof_index, Point<dim>> &positions,
+         const AffineConstraints<double>                     &hanging_nodes);
+
     LinearAlgebra::distributed::Vector<double> normals, lifts;
   };
 

@@ -40,7 +40,7 @@ namespace Viscoplastic
       return tangent_matrix;
     }
 
-    /// C at the samples.
+    /// The tangents C = d sigma/d eps at the samples, unit of stress.
     const std::vector<SymmetricTensor<4, 3>> &
     at_samples() const
     {

@@ -25,7 +25,7 @@ namespace Viscoplastic
     /// The scene has a temperature. Collective.
     explicit ThermalStrain(const StressSpace<dim> &stress_space);
 
-    /// By sample.
+    /// T and alpha (T - T_0) at each sample.
     struct Samples
     {
       double              t;
@@ -57,12 +57,12 @@ namespace Viscoplastic
                const double        factor,
                IrreversibleStress &stress) const;
 
-    /// Change z of time @p t_old by what the thermal stress changes up to time
-    /// t. Collective.
+    /// Add to z the change of the thermal stress from @p t_old to @p t.
+    /// Collective.
     void
     follow(const double t_old, const double t, IrreversibleStress &z) const;
 
-    /// The stress of the thermal strain @p strain.
+    /// The thermal stress -E strain I, unit of stress.
     static SymmetricTensor<2, 3>
     stress(const Stiffness &stiffness, const double strain)
     {
@@ -73,15 +73,15 @@ namespace Viscoplastic
     const StressSpace<dim> &stress_space;
     /// alpha of each cell, empty if none expands, and T_0 of each sample.
     std::vector<double> expansion, reference;
-    /// The last two that were asked for: those of a step.
+    /// The samples at the last two times asked for, the ends of a step.
     mutable std::array<std::shared_ptr<const Samples>, 2> last;
   };
 
 
 
-  /// What z is without the thermal stress of time t, kept in @p rest unless z
-  /// is that itself; empty if it is nothing else. @p thermal: null in scenes
-  /// without temperature. Collective.
+  /// z minus the thermal stress at time t: z itself without temperature (@p
+  /// thermal null), otherwise computed into @p rest; empty if that is all of z.
+  /// Collective.
   template <int dim>
   const IrreversibleStress &
   without_thermal_stress(const ThermalStrain<dim> *thermal,

@@ -224,6 +224,15 @@ namespace Viscoplastic
     void
     compare_with_manifold();
 
+    /// Add a part of the face @p f of a cell with this number. Returns the
+    /// number of its shape.
+    unsigned int
+    add_subface_side(const Cell           &cell,
+                     const unsigned int    number,
+                     const unsigned int    f,
+                     const unsigned int    subface,
+                     FESubfaceValues<dim> &values);
+
     /// Face @p f of a cell with this number.
     void
     add_boundary_face(const Cell                   &cell,

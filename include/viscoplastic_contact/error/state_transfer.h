@@ -73,6 +73,16 @@ namespace Viscoplastic
     std::vector<char>
     pack(const CellIterator &cell, const CellStatus status) const;
 
+    /// Set a field at the samples of the new cells of an old one from what
+    /// pack() has made of it; @p new_cell: their numbers by active cell index.
+    void
+    unpack_samples(const CellIterator              &cell,
+                   const CellStatus                 status,
+                   const SymmetricTensor<2, 3>     *values,
+                   const StressSpace<dim>          &new_stress_space,
+                   const std::vector<unsigned int> &new_cell,
+                   IrreversibleStress              &z) const;
+
     parallel::distributed::Triangulation<dim> &triangulation;
     const unsigned int                         n_samples;
     /// Of a field that a cell passes on, at most.

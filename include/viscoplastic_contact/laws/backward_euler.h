@@ -24,8 +24,8 @@ namespace Viscoplastic
              k * law.step_rate(elastic + z, strain, k, stiffness, point);
     }
 
-    /// The norm of the residual; not finite where the law has no value, which a
-    /// trial state may meet.
+    /// The norm of the residual at a trial state; not finite where the law has
+    /// no value.
     double
     try_residual(const SymmetricTensor<2, 3> &z, SymmetricTensor<2, 3> &F) const
     {
@@ -40,8 +40,8 @@ namespace Viscoplastic
         }
     }
 
-    /// The energy norm of a stress, in which flow with a potential is
-    /// monotone.
+    /// The energy norm (tau : E^-1 tau)^(1/2), in which flow with a potential
+    /// is monotone.
     double
     norm(const SymmetricTensor<2, 3> &stress) const
     {
@@ -129,9 +129,8 @@ namespace Viscoplastic
                       const Stiffness             &stiffness,
                       const LawPoint              &point);
 
-  /// What a solver may take for C: its symmetric part, moved towards E as far
-  /// as it takes to be positive definite. Laws without a potential, such as
-  /// those that harden, do not have a symmetric one.
+  /// The symmetric part of C, moved towards E until it is positive definite. C
+  /// itself is not symmetric for laws without a potential, such as hardening.
   SymmetricTensor<4, 3>
   definite_tangent(const SymmetricTensor<4, 3> &tangent,
                    const Stiffness             &stiffness);

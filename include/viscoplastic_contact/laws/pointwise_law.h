@@ -74,8 +74,7 @@ namespace Viscoplastic
       return law().slopes(sigma_eq, point);
     }
 
-    /// The tangent is the larger slope. It changes continuously with the
-    /// stress, so the present one counts.
+    /// The relaxation rate from the tangent, the larger slope.
     double
     relaxation_rate(const SymmetricTensor<2, 3> &stress,
                     const SymmetricTensor<2, 3> & /*strain*/,

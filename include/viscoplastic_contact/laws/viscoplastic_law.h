@@ -23,10 +23,10 @@ namespace Viscoplastic
   /// The subsection of the parameter file that a law is made from.
   struct LawSection
   {
-    /// Inside the subsection.
+    /// The handler, inside the subsection.
     const ParameterHandler &prm;
 
-    /// Names it in messages, such as "Material 2/norton".
+    /// The name of the section in messages, such as "Material 2/norton".
     std::string path;
 
     /// The dimension of the scene: in 2 dimensions there is no z.
@@ -89,7 +89,6 @@ namespace Viscoplastic
       return name;
     }
 
-    /// The expression.
     const std::string &
     get_text() const
     {
@@ -182,7 +181,7 @@ namespace Viscoplastic
     virtual bool
     depends_on_position() const;
 
-    /// Whether parameters are expressions of the temperature.
+    /// Whether a parameter is an expression of the temperature.
     virtual bool
     has_parameters_of_temperature() const;
 
@@ -240,7 +239,7 @@ namespace Viscoplastic
     /// when the material begins to exist.
     const unsigned int n_history_variables;
 
-    /// H, per time, in components as the history variables.
+    /// H = d alpha/dt, per time, in the components of the history variables.
     virtual SymmetricTensor<2, 3>
     history_rate(const SymmetricTensor<2, 3> &stress,
                  const SymmetricTensor<2, 3> &strain,
@@ -288,9 +287,8 @@ namespace Viscoplastic
                   const Stiffness             &stiffness,
                   const LawPoint              &point) const;
 
-    /// Whether these and tangents() depend on the point and k alone, not on its
-    /// history: G and H are linear in stress, strain and history, up to a
-    /// constant.
+    /// Whether step_tangents() and tangents() depend on the point and k alone:
+    /// G and H are affine in stress, strain and history.
     virtual bool
     has_constant_tangents() const
     {
@@ -314,9 +312,9 @@ namespace Viscoplastic
       double secant, tangent;
     };
 
-    /// These where f depends on the von Mises stress sigma_eq and the point
-    /// alone and is convex, so that a step of backward Euler is one equation
-    /// for sigma_eq (radial return); none for other flow.
+    /// The slopes, where f depends on the von Mises stress sigma_eq and the
+    /// point alone and is convex: backward Euler is then one equation for
+    /// sigma_eq (radial return). None for other flow.
     virtual std::optional<FlowSlopes>
     radial_flow(const double /*sigma_eq*/, const LawPoint & /*point*/) const
     {

@@ -64,18 +64,17 @@ namespace Viscoplastic
     restore(const std::optional<PreconditionerState> &state) override;
 
   private:
-    /// Build the hierarchy for the present truncation.
     std::unique_ptr<SmoothedAggregation>
     make(const FaceTruncation &truncation) const;
 
     void
     build();
 
-    /// What ML costs in iterations of conjugate gradients.
+    /// The cost of a set-up of ML, in iterations of conjugate gradients.
     unsigned int
     price() const;
 
-    /// See damping.
+    /// Set `damping' from the matrix.
     void
     make_damping();
 
@@ -96,10 +95,9 @@ namespace Viscoplastic
     mutable DistributedVector damped;
 
     std::unique_ptr<SmoothedAggregation> amg;
-    /// That of the matrix without truncation and springs.
+    /// Of the matrix without truncation and springs, for vmult_whole().
     mutable std::unique_ptr<SmoothedAggregation> whole;
-    /// The truncation for which it was built.
-    FaceTruncation built_for;
+    FaceTruncation                               built_for;
     /// Iterations a decade right after a set-up, the best so far; iterations
     /// lost against that since the last set-up.
     double best_rate = 0., lost_iterations = 0.;

@@ -13,12 +13,11 @@ namespace Viscoplastic
   /// ones: how its preconditioner was built, and the iterations it has taken.
   struct PreconditionerState
   {
-    /// The truncation for which it was built.
     FaceTruncation built_for;
     /// Iterations a decade right after a set-up, the best so far; iterations
     /// lost against that since the last set-up.
     double best_rate = 0., lost_iterations = 0.;
-    /// Whether it has not been used since.
+    /// Whether no solve has used it yet.
     bool is_fresh = false;
   };
 
@@ -74,7 +73,7 @@ namespace Viscoplastic
     virtual bool
     renew(const DistributedMatrix &matrix) = 0;
 
-    /// The state to go on from later; nothing if all solves are alike.
+    /// For restore(); nothing if solves do not depend on earlier ones.
     virtual std::optional<PreconditionerState>
     preconditioner_state() const
     {

@@ -22,7 +22,7 @@ namespace Viscoplastic
     const std::vector<bool> &excluded;
     /// The rigid body modes on owned entries, zero where excluded.
     std::function<std::vector<DistributedVector>()> rigid_body_modes;
-    /// The meshes that the present one has come from.
+    /// Makes the hierarchy of meshes for geometric multigrid.
     std::function<NodeHierarchy()> hierarchy;
     /// The restriction to the contact face; empty without contact points.
     const FaceRestriction &face;

@@ -29,7 +29,7 @@ namespace Viscoplastic
               const std::vector<Mask> &masks,
               const bool               may_rebuild) = 0;
 
-    /// The next masks of this kind get a set-up of their own.
+    /// Make the next set_masks() of this kind set up anew.
     virtual void
     forget(const Masking masking) = 0;
 

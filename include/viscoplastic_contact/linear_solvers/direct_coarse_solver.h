@@ -33,7 +33,7 @@ namespace Viscoplastic
       return true;
     }
 
-    /// A factorization, unless the masks are those of the last one.
+    /// Factorizes, unless the masks are those of the last factorization.
     bool
     set_masks(const Masking            masking,
               const std::vector<Mask> &masks,

@@ -16,7 +16,6 @@ namespace Viscoplastic
   class FaceRestriction
   {
   public:
-    /// An empty face.
     FaceRestriction() = default;
 
     /// @p dofs: the global degree of freedom of each entry of a face vector;
@@ -31,7 +30,7 @@ namespace Viscoplastic
       return contact_layout;
     }
 
-    /// Add a piece to how an obstacle gives way.
+    /// Add a piece to the normal compliance of an obstacle.
     void
     add_compliance(const unsigned int point,
                    const double       stiffness,
@@ -69,7 +68,7 @@ namespace Viscoplastic
       return owned_positions;
     }
 
-    /// R v.
+    /// The face vector R v.
     Vector<double>
     gather(const DistributedVector &v) const;
 

@@ -132,8 +132,8 @@ namespace Viscoplastic
     /// The matrix in double precision, where its rows share values; none after
     /// a renewal.
     std::unique_ptr<Operator> shared_matrix;
-    /// Levels are in this unit of stiffness: in single precision, numbers have
-    /// a small range.
+    /// The unit of stiffness on the levels, whose single precision has a small
+    /// range.
     double unit = 1.;
   };
 } // namespace Viscoplastic

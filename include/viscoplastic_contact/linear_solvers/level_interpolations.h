@@ -53,7 +53,7 @@ namespace Viscoplastic
     const NodeHierarchy     &hierarchy;
     const std::vector<Node> &begins;
     const MPI_Comm           communicator;
-    /// What lies opposite to owned nodes of the mesh of the next call.
+    /// Mortar rows of owned nodes of the mesh of the next call.
     std::map<Node, Row> opposite;
   };
 } // namespace Viscoplastic

@@ -81,8 +81,8 @@ namespace Viscoplastic
                const NodeHierarchy     &hierarchy,
                const FaceRestriction   &restriction);
 
-    /// Take note of levels with new values, the first one first, and give them
-    /// the inverse blocks of nodes off the face. All masks are lost.
+    /// Take levels with new matrix values, coarsest first, and set the inverse
+    /// diagonal blocks of their nodes off the face. Discards all masks.
     void
     set_levels(const std::vector<MultigridLevel<dim> *> &levels);
 
@@ -95,23 +95,22 @@ namespace Viscoplastic
         const FaceTruncation *truncation,
         const double          unit);
 
-    /// Make masks those of the next cycle.
+    /// Use these masks in the next cycles.
     void
     use(const Masking masking) const;
 
-    /// The masks of the present cycle.
     Masking
     in_use() const
     {
       return *used;
     }
 
-    /// Cut off what is not free in the present cycle from a vector of a level.
+    /// Project a vector of a level onto the unknowns of the present cycle.
     void
     project(const unsigned int level, Vector &v) const;
 
   private:
-    /// What is known of an owned face node on all levels.
+    /// An owned face node of the finest mesh, and its directions.
     struct FaceNode
     {
       Node         node;
@@ -122,26 +121,25 @@ namespace Viscoplastic
       std::array<Tensor<1, dim>, dim> direction;
       unsigned int                    n_dofs;
 
-      /// A block of face entries in Cartesian components.
       Tensor<2, dim>
       to_cartesian(const Tensor<2, 3> &block) const;
 
-      /// How many of the directions a projector of face entries blocks.
+      /// The number of directions that a projector of face entries removes.
       double
       n_blocked(const Tensor<2, 3> &projector) const;
     };
 
-    /// What a truncation means at a face node.
+    /// The constraint and the spring that a truncation puts on a face node.
     struct Treatment
     {
-      /// Onto what is free of the entries of face vectors, and which share of
-      /// them is not.
+      /// The projector onto the free directions of face entries, and the
+      /// fraction of directions that it removes.
       Tensor<2, 3>   projector;
       double         blocked = 0.;
       Tensor<2, dim> spring; // Cartesian
     };
 
-    /// What a truncation means to the cycle at a node of a level.
+    /// The mask of a truncation at a node of a level.
     struct Entry
     {
       unsigned int   node; // local
@@ -163,28 +161,27 @@ namespace Viscoplastic
     {
       MultigridLevel<dim>   *space;
       std::vector<FaceEntry> face;
-      /// Of other nodes with excluded components, and of face nodes without and
-      /// with the present truncation.
+      /// The masks of nodes off the face with excluded components, and of face
+      /// nodes without and with the truncation.
       Entries                fixed;
       std::array<Entries, 2> on_face;
     };
 
-    /// The direction of a degree of freedom at an owned node.
     Tensor<1, dim>
     direction(const Node node, const unsigned int component) const;
 
-    /// What is behind the masks: what the face of the last mesh is given, ...
+    /// The treatments of face nodes on the finest mesh, ...
     std::vector<Treatment>
     treatments(const FaceTruncation *truncation, const double unit) const;
 
-    /// ... what follows for the level below @p level, ...
+    /// ... their restriction to the level below @p level, ...
     std::vector<Treatment>
     coarsen(const std::vector<Treatment> &fine,
             const FaceTruncation         &truncation,
             const bool                    has_springs,
             const unsigned int            level) const;
 
-    /// ... and the masks.
+    /// ... and the masks that they make on a level.
     Entries
     make_entries(const std::vector<Treatment> &treatments,
                  const Level                  &level) const;
@@ -199,7 +196,6 @@ namespace Viscoplastic
   };
 
 
-  /// Multiply the values of a node by a tensor.
   template <int dim, typename Number>
   void
   multiply(const Tensor<2, dim> &tensor, Number *value)

@@ -36,25 +36,23 @@ namespace Viscoplastic
       return nodes;
     }
 
-    /// The local number of a node that is owned or a ghost.
     unsigned int
     local_number(const NodeHierarchy::Node node) const;
 
     std::vector<unsigned int>
     local_numbers(const std::vector<NodeHierarchy::Node> &nodes) const;
 
-    /// Consecutive over all ranks, by local number.
+    /// The consecutive number over all ranks of a node with this local number.
     types::global_dof_index
     global_number(const unsigned int node) const
     {
       return partitioner->local_to_global(node * dim) / dim;
     }
 
-    /// Other values in the same pattern.
+    /// Take other values in the same sparsity pattern.
     void
     set_values(const BlockRows<dim> &matrix);
 
-    /// Interpolation from the level @p coarser, of owned nodes.
     void
     set_interpolation(const Interpolation       &interpolation,
                       const MultigridLevel<dim> &coarser);
@@ -65,7 +63,6 @@ namespace Viscoplastic
       return rows;
     }
 
-    /// See SharedRows.
     NodeBlock<dim>
     row_sum(const unsigned int node) const
     {
@@ -107,7 +104,7 @@ namespace Viscoplastic
     void
     interpolate(Vector &fine, Vector &coarse) const;
 
-    /// Vectors of a cycle.
+    /// Work vectors of a cycle on this level.
     mutable Vector x, b, r;
 
   private:
@@ -125,7 +122,7 @@ namespace Viscoplastic
   };
 
 
-  /// The answer of the owner of each node to a question. Collective.
+  /// answer(node) as the owner of each node has it. Collective.
   std::vector<std::vector<NodeHierarchy::Parent>>
   ask_owners(const std::vector<NodeHierarchy::Node> &nodes,
              const std::vector<NodeHierarchy::Node> &begins,

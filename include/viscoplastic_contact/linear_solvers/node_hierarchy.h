@@ -5,6 +5,7 @@
 #include <deal.II/base/tensor.h>
 #include <deal.II/base/types.h>
 
+#include <algorithm>
 #include <map>
 #include <vector>
 
@@ -68,7 +69,18 @@ namespace Viscoplastic
   };
 
 
-  /// The part of a padded tensor that means something.
+  /// The rank that owns a node; @p begins: the first node of each rank, and the
+  /// end.
+  inline unsigned int
+  owner_of(const NodeHierarchy::Node               node,
+           const std::vector<NodeHierarchy::Node> &begins)
+  {
+    return std::upper_bound(begins.begin(), begins.end(), node) -
+           begins.begin() - 1;
+  }
+
+
+  /// The leading dim x dim block of a padded tensor.
   template <int dim>
   Tensor<2, dim>
   leading_block(const Tensor<2, 3> &tensor)

@@ -29,9 +29,8 @@ namespace Viscoplastic
       return false;
     }
 
-    /// The space and the springs for which vmult() is wanted from now on. A
-    /// truncation that is only tried must not be what a preconditioner is
-    /// rebuilt for.
+    /// Set the truncated space and the springs of vmult(). Without @p
+    /// may_rebuild the truncation is only tried, and nothing is set up anew.
     virtual void
     set_truncation(const FaceTruncation &truncation,
                    const bool            may_rebuild) = 0;

@@ -61,7 +61,7 @@ namespace Viscoplastic
       return *schur_complement;
     }
 
-    /// Keeps the ordering of the unknowns.
+    /// Factorize anew with the same fill reducing ordering.
     bool
     renew(const DistributedMatrix &matrix) override;
 
@@ -82,11 +82,11 @@ namespace Viscoplastic
     void
     extract_schur_complement();
 
-    /// L^{-1} r.
+    /// Forward substitution L^{-1} r, in the order of the factorization.
     Vector<double>
     forward(const DistributedVector &r) const;
 
-    /// u += L^{-T} v.
+    /// Backward substitution, u += L^{-T} v.
     void
     backward(Vector<double> v, DistributedVector &u) const;
 

@@ -20,9 +20,9 @@ namespace Viscoplastic
   class SmoothedAggregation
   {
   public:
-    /// @p near_null_space: what hardly has energy, rigid body modes, one after
-    /// the other on owned entries, zero where the matrix has a row of its own;
-    /// @p dim degrees of freedom a node. Collective.
+    /// @p near_null_space: rigid body modes on owned entries, one after the
+    /// other, zero at constrained degrees of freedom; @p dim degrees of freedom
+    /// a node. Collective.
     SmoothedAggregation(std::unique_ptr<DistributedMatrix> matrix,
                         std::vector<double>                near_null_space,
                         const unsigned int                 dim);
@@ -36,7 +36,7 @@ namespace Viscoplastic
     // What ML refers to.
     std::unique_ptr<DistributedMatrix> matrix;
     std::vector<double>                near_null_space;
-    /// The matrix is divided by this.
+    /// The unit of stiffness by which the matrix is divided.
     double                                             unit = 1.;
     std::unique_ptr<TrilinosWrappers::PreconditionAMG> amg;
   };

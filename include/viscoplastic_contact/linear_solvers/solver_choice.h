@@ -18,7 +18,7 @@ namespace Viscoplastic
     algebraic_multigrid
   };
 
-  /// The name of a solver as tables of a study have it.
+  /// The name of a solver in the tables of refinement studies.
   std::string
   to_string(const BulkSolverKind kind);
 
@@ -34,11 +34,10 @@ namespace Viscoplastic
     /// The least number of solves with one matrix, and the number of solves in
     /// a time step.
     unsigned int n_solves = 1, solves_per_step = 1;
-    /// Degrees of freedom in all, and of these on the contact face. Prices are
-    /// those of systems beyond dealii::types::global_dof_index, too.
+    /// Degrees of freedom in all and on the contact face; also for cost models
+    /// beyond dealii::types::global_dof_index.
     std::uint64_t n_dofs = 0, n_face_dofs = 0;
-    /// Whether there is friction on the face.
-    bool has_friction = false;
+    bool          has_friction = false;
     /// The number of unknowns of the mesh that the present one is refined from;
     /// 0 where it is not refined.
     std::uint64_t n_first_dofs = 0;

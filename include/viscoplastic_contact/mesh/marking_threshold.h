@@ -10,7 +10,6 @@ namespace Viscoplastic
 {
   using namespace dealii;
 
-  /// The side of the critical value on which the threshold is to lie.
   enum class ThresholdSide
   {
     below,

@@ -7,9 +7,9 @@
 
 namespace Viscoplastic
 {
-  /// Make the mesh of a scene as it is before any adaptation: take it from a
-  /// generator or a file, give it the ids of the expressions, move, check and
-  /// refine it. Collective. Throws ExcMessage with a sentence for the user.
+  /// Make the initial mesh of a scene: from a generator or a file, with ids
+  /// from expressions, moved, checked and refined. Throws ExcMessage with a
+  /// sentence for the user. Collective.
   template <int dim>
   void
   make_mesh(const GeometryParameters                  &geometry,

@@ -23,7 +23,7 @@ namespace Viscoplastic
                  const CellId                                    &cell,
                  const unsigned int                               vertex);
 
-  /// Refine a mesh as another one of the same coarse cells is. Collective.
+  /// Make a mesh that of another one with the same coarse cells. Collective.
   template <int dim>
   void
   refine_like(const parallel::distributed::Triangulation<dim> &model,

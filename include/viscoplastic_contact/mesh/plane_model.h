@@ -17,9 +17,8 @@
 
 namespace Viscoplastic
 {
-  /// The mapping of cells whose weights JxW integrate over what a cell stands
-  /// for: itself, or the ring that it is a section of, with 2 pi r. Values of
-  /// finite elements with it are those of the (bi-, tri-)linear mapping.
+  /// The (bi-, tri-)linear mapping, with weights JxW that include 2 pi r for
+  /// bodies of revolution.
   template <int dim>
   const Mapping<dim> &
   mapping_of(const PlaneModel model);

@@ -13,7 +13,6 @@ namespace Viscoplastic
 {
   using namespace dealii;
 
-  /// A point in a cell of a mesh.
   template <int dim>
   struct CellPoint
   {
@@ -23,8 +22,7 @@ namespace Viscoplastic
     /// The cell by its number in owned_cells(); elsewhere on all ranks but the
     /// one that owns it.
     std::size_t cell = elsewhere;
-    /// The coordinates of the point in the unit cell.
-    Point<dim> unit;
+    Point<dim>  unit;
     /// The face of the cell that it has been looked for on, if any.
     unsigned int face = numbers::invalid_unsigned_int;
 
@@ -47,7 +45,7 @@ namespace Viscoplastic
   };
 
 
-  /// Whether cells of a material count; empty for all.
+  /// Whether to look into cells of a material; empty for all.
   using MaterialFilter = std::function<bool(const types::material_id)>;
 
   /// Find the cells of some points; of several cells that a point is on, the

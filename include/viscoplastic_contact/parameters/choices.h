@@ -141,7 +141,7 @@ namespace Viscoplastic
     return scheme == TimeScheme::heun ? 2 : 1;
   }
 
-  /// The treatment of explicit steps beyond their stability limit.
+  /// What becomes of explicit steps beyond their stability limit.
   enum class StiffnessPolicy
   {
     refuse,
@@ -316,7 +316,7 @@ namespace Viscoplastic
 
 
 
-  /// Like ParameterHandler::add_parameter().
+  /// ParameterHandler::add_parameter() for an enumeration.
   template <typename Choice>
   void
   add_choice(ParameterHandler  &prm,

@@ -14,9 +14,9 @@ namespace Viscoplastic
   describe_parameters(const std::vector<std::string> &files     = {},
                       const std::vector<std::string> &overrides = {});
 
-  /// The same for programs, without values: `introduction', by name what is
-  /// said of `sections', and all `entries' with those of laws in the shared
-  /// libraries of the scene.
+  /// All entries in JSON, without values: an `introduction', the descriptions
+  /// of `sections' by name, and the `entries', with those of laws in shared
+  /// libraries.
   std::string
   describe_parameters_as_json(const std::vector<std::string> &files     = {},
                               const std::vector<std::string> &overrides = {});

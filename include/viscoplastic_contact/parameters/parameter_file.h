@@ -52,9 +52,8 @@ namespace Viscoplastic
     GeometryParameters geometry;
     /// The material of all cells; without meaning where there are numbered
     /// materials.
-    MaterialParameters material;
-    StressParameters   stress;
-    /// The numbered materials by material id of the cells.
+    MaterialParameters                         material;
+    StressParameters                           stress;
     std::map<unsigned int, MaterialParameters> materials;
     SupportParameters                          supports;
     LoadParameters                             loads;
@@ -90,9 +89,8 @@ namespace Viscoplastic
     std::map<std::string, std::string>
     entries_with_units() const;
 
-    /// A sentence that quotes the value of an entry with units, or a component
-    /// of it, as it is in the units of the scene: with what the files say in
-    /// its place.
+    /// A message in which values of entries are replaced by what the files have
+    /// for them, with their units.
     std::string
     quote_as_written(const std::string &sentence) const;
 
@@ -124,7 +122,7 @@ namespace Viscoplastic
     void
     check_material(const std::vector<ParameterLine> &lines) const;
 
-    /// Put what it stands for in the place of `automatic'. Throws ExcMessage if
+    /// Replace choices `automatic' by what they stand for. Throws ExcMessage if
     /// entries contradict `Error control/Tolerance'.
     void
     resolve_automatic_choices();

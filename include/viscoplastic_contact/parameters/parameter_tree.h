@@ -19,11 +19,9 @@ namespace Viscoplastic
   boost::property_tree::ptree
   declared_entries(const ParameterHandler &handler);
 
-  /// The tree as a text in JSON.
   std::string
   as_json(const boost::property_tree::ptree &tree);
 
-  /// Whether a node of that tree is an entry.
   bool
   is_entry(const boost::property_tree::ptree &node);
 

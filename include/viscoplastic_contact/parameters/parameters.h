@@ -60,8 +60,8 @@ namespace Viscoplastic
     /// of the law is that of its entries; empty where rates do not depend on
     /// temperature.
     std::string activation_energy, law_temperature;
-    /// Times; empty for a material that is there from the beginning, or to the
-    /// end.
+    /// Times at which the material appears and vanishes; empty for the
+    /// beginning and the end.
     std::string added_at, removed_at;
 
     void
@@ -114,7 +114,7 @@ namespace Viscoplastic
     declare(ParameterHandler &prm);
   };
 
-  /// A known solution: to measure errors, or to make up a problem from.
+  /// A known solution, to measure errors or to manufacture a problem.
   struct ExactSolutionParameters
   {
     std::string displacement, stress;
@@ -147,6 +147,10 @@ namespace Viscoplastic
 
     void
     declare(ParameterHandler &prm);
+
+    /// The entries of the role contact.
+    void
+    declare_contact(ParameterHandler &prm);
   };
 
   struct TimeParameters
@@ -162,7 +166,7 @@ namespace Viscoplastic
   /// The entries that control the size of time steps by their error.
   struct StepControlParameters
   {
-    /// 0: the steps of the phases.
+    /// The error a step may make; 0 for the steps of the phases.
     double          tolerance = 0.;
     std::string     landing_times;
     bool            land_on_kinks   = true;
@@ -183,7 +187,7 @@ namespace Viscoplastic
   struct SolverParameters
   {
     LinearSolver linear_solver = LinearSolver::automatic;
-    /// 0: coupled to the estimated discretization error.
+    /// Relative; 0: coupled to the estimated discretization error.
     double          contact_tolerance  = 0.;
     unsigned int    maximal_iterations = 200;
     CoulombPressure coulomb_pressure   = CoulombPressure::newton;
@@ -223,7 +227,7 @@ namespace Viscoplastic
     declare(ParameterHandler &prm);
   };
 
-  /// The entries for ladders of runs, which contrib/study reads.
+  /// The entries of refinement studies, which contrib/study reads.
   struct StudyParameters
   {
     unsigned int levels  = 4;

@@ -14,7 +14,6 @@ namespace Viscoplastic
 
   struct ParameterLine;
 
-  /// Declare `Table 1' and so on for these numbers.
   void
   declare_tables(ParameterHandler &prm, const std::set<unsigned int> &numbers);
 

@@ -35,7 +35,6 @@ namespace Viscoplastic
     std::vector<std::string>
     that_never_acted(const Scene<dim> &scene, const RunSummary<dim> &run) const;
 
-    /// Write to, or read from, an archive.
     template <typename Archive>
     void
     exchange(Archive &archive)

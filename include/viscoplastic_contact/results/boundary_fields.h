@@ -33,7 +33,6 @@ namespace Viscoplastic
     static std::set<RecordedField>
     of_output(const Scene<dim> &scene, const ContactFace<dim> *face);
 
-    /// The name of a field in outputs.
     static std::string
     name(const RecordedField field)
     {
@@ -87,6 +86,10 @@ namespace Viscoplastic
         double                   *values) const;
 
   private:
+    /// The mean of sigma n in an owned cell.
+    Tensor<1, dim>
+    stress_vector(const std::size_t cell, const Tensor<1, dim> &normal) const;
+
     void
     make_fields(const ContactFace<dim> *face);
     /// Make the fields on the other sides of those at the nodes of Gamma_3.
@@ -102,10 +105,10 @@ namespace Viscoplastic
     const StressSpace<dim> &stress_space;
     const State<dim>       &state;
     std::set<RecordedField> fields;
-    /// Of boundaries that are the other side.
+    /// The secondary boundary of each primary one.
     std::map<types::boundary_id, types::boundary_id> secondary_of;
-    /// Of friction points, at the nodes. A node that other conditions prescribe
-    /// has no point; fields that are not asked for are empty.
+    /// Nodal fields of contact points, with ghosts; zero at nodes without a
+    /// point, empty where not asked for.
     DistributedVector slip, slip_rate, density, bound, utilization, slipping,
       pressure, gap, friction_work;
   };

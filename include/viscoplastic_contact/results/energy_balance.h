@@ -6,10 +6,8 @@
 
 namespace Viscoplastic
 {
-  /// The energies of one step.
   struct StepEnergies
   {
-    /// The energy stored at its end.
     double stored;
     /// External work and dissipation in the step, in units of energy; see
     /// StressSummary and FrictionIdentities.
@@ -46,7 +44,6 @@ namespace Viscoplastic
   class EnergyBalance
   {
   public:
-    /// Begin with the energy that the initial state stores.
     void
     begin(const double stored_energy)
     {
@@ -120,7 +117,6 @@ namespace Viscoplastic
       return adaptation;
     }
 
-    /// The stored energy that stages of construction have added.
     double
     construction_energy() const
     {
@@ -144,7 +140,6 @@ namespace Viscoplastic
       return largest_work + initial_energy;
     }
 
-    /// Write to, or read from, an archive.
     template <typename Archive>
     void
     exchange(Archive &archive)

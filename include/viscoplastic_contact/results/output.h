@@ -96,7 +96,7 @@ namespace Viscoplastic
     write_body(const FlowLaws<dim>  &laws,
                const State<dim>     &state,
                const Vector<double> *squared_estimate);
-    /// Of Gamma_3 ("contact"), or of the other sides of it ("opposite").
+    /// Write Gamma_3 ("contact") or the primary boundaries ("opposite").
     std::string
     write_contact(const std::string      &name,
                   const StressSpace<dim> &stress_space,
@@ -115,7 +115,6 @@ namespace Viscoplastic
     write_in_background();
     void
     write_pvd(const std::string &name) const;
-    /// The series that the scene has.
     std::vector<std::string>
     series() const;
     /// Remove pieces of outputs that do not count, on rank 0: those behind the

@@ -79,7 +79,6 @@ namespace Viscoplastic
       balance.add_mesh_change(before, after);
     }
 
-    /// Record the beginning of a stage of construction.
     void
     record_stage(const EnergiesOnMesh &before, const EnergiesOnMesh &after)
     {
@@ -175,8 +174,8 @@ namespace Viscoplastic
            const StepQuantities<dim> &quantities,
            const SolutionErrors      &errors);
 
-    /// All that is recorded of a step: the only place that knows the names of
-    /// quantities, their units, and when a scene has them.
+    /// The row of statistics.csv of a step: the only place that knows the names
+    /// of quantities, their units, and when a scene has them.
     StatisticsRow
     row(const AcceptedStep<dim>   &step,
         const StepQuantities<dim> &quantities,
@@ -187,7 +186,6 @@ namespace Viscoplastic
     add_asked_for(const StepQuantities<dim> &quantities,
                   StatisticsRow             &row) const;
 
-    /// Add the seconds of this step by phase.
     void
     add_seconds(StatisticsRow &row);
 
@@ -220,7 +218,7 @@ namespace Viscoplastic
 
     const Discretization<dim>   *discretization = nullptr; // the present one
     std::vector<PointProbe<dim>> probes;
-    /// Null where nothing is asked for.
+    /// Null where not asked for.
     std::unique_ptr<FieldProbes<dim>>    point_fields;
     std::unique_ptr<FieldIntegrals<dim>> integrals;
     /// Since t = 0, in the place of each integral that sums up over the steps.
@@ -254,7 +252,7 @@ namespace Viscoplastic
     /// Seconds of the solves of this process, and what they would have taken
     /// without friction; see ContactReport.
     double solve_seconds = 0., plain_solve_seconds = 0.;
-    /// Of the parts of the run before the last restart, and of earlier passes.
+    /// Seconds of the run before its last restart, and of its pilot run.
     double       earlier_seconds = 0., pilot_seconds = 0.;
     ExpectedStep expected_step;
     Timer        clock;

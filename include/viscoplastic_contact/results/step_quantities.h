@@ -51,13 +51,11 @@ namespace Viscoplastic
     double tension_area = 0.;
     /// InterfaceSlide::largest(); zero without contact between bodies.
     double slide = 0.;
-    /// By how much friction bounds of the pressure of the step before miss
-    /// those of the present one.
+    /// The error of friction bounds that lag by a step.
     typename ContactFace<dim>::MissedBounds friction_bounds;
     /// The estimate by which an adaptive mesh is refined; zero before the first
     /// one.
-    double refinement_estimate = 0.;
-    /// The displacements of the points of `Output/Points'.
+    double                      refinement_estimate = 0.;
     std::vector<Tensor<1, dim>> point_displacements;
     /// The values of `Output/Point fields' and `Output/Integrals'.
     std::vector<double> point_fields, integrals;

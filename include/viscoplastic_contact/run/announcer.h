@@ -33,11 +33,11 @@ namespace Viscoplastic
     void
     announce_equilibrium(const Scene<dim> &scene, const double largest_u0);
 
-    /// The stage of construction that begins.
+    /// Announce the stage of construction that begins.
     void
     announce_stage(const Scene<dim> &scene);
 
-    /// The size of the first mesh, and what no mesh mends. Collective.
+    /// Announce the first mesh, and what no mesh mends. Collective.
     void
     announce(const Discretization<dim> &discretization);
 
@@ -45,7 +45,7 @@ namespace Viscoplastic
     void
     warn_of_held_faces(const Discretization<dim> &discretization);
 
-    /// @p name may be empty, as long as there is no solver.
+    /// Announce the linear solver once; @p name is empty while there is none.
     void
     announce_solver(const std::string &name)
     {
@@ -56,12 +56,12 @@ namespace Viscoplastic
     }
 
   private:
-    /// What other numbers of ranks would gain or lose, and what all of them
-    /// keep. Collective.
+    /// Advise on the number of ranks, from a model of their speed-up and
+    /// memory. Collective.
     void
     advise_on_ranks(const Discretization<dim> &discretization);
 
-    /// Where data contradict each other at the end of a phase. Collective.
+    /// Warn of prescribed displacements that contradict each other. Collective.
     void
     warn_of_jumps(const AdmissibleSpace<dim> &space);
 

@@ -23,10 +23,10 @@ namespace Viscoplastic
 
     Task                     task = Task::run;
     std::vector<std::string> files;
-    /// `Section/Entry=value', in their order.
+    /// Assignments `Section/Entry=value', in their order.
     std::vector<std::string> overrides;
     bool                     quiet = false;
-    /// Whether print_scene has the means of the data.
+    /// Whether the task print_scene adds mean values of the data.
     bool with_means = false;
     /// Whether each step gets a line, also those like the one before.
     bool verbose = false;

@@ -7,9 +7,8 @@
 
 namespace Viscoplastic
 {
-  /// How large the solution of a scene becomes, by a run on its first mesh
-  /// without files and with at most eight steps for each phase. The argument
-  /// stays in use.
+  /// Estimate the size of a scene's solution by a run without files on its
+  /// first mesh, with at most eight steps a phase. The argument stays in use.
   template <int dim>
   PilotRun
   pilot_run(const Parameters &parameters);

@@ -19,7 +19,7 @@ namespace Viscoplastic
     std::string origin;
     /// Whether it is a load; not of friction bounds.
     bool is_load = false;
-    /// When laws meet it: a thermal stress in the greatest heat.
+    /// Its time: of a thermal stress that of the highest temperature.
     double t = 0.;
   };
 

@@ -36,7 +36,6 @@ namespace Viscoplastic
     std::optional<CheckpointManifest>
     find_checkpoint(const CommandLine::Restart restart);
 
-    /// Where the scene keeps its checkpoints.
     const CheckpointStore checkpoints;
 
     /// The directory of the results; ends with a slash.
@@ -50,12 +49,12 @@ namespace Viscoplastic
     void
     begin();
 
-    /// Go on after the accepted state, with fields at @p output_times: what is
-    /// later than it goes.
+    /// Continue the files after the accepted state, with fields at @p
+    /// output_times; removes what is later.
     void
     resume(const std::vector<double> &output_times);
 
-    /// The next functions are about the accepted state on this mesh.
+    /// Set the mesh on which the next functions take the accepted state.
     void
     set_mesh(const Discretization<dim> &discretization)
     {
@@ -63,7 +62,7 @@ namespace Viscoplastic
       lines.set_mesh(discretization);
     }
 
-    /// From here on signals end the run after a checkpoint only.
+    /// From now on signals end the run after a checkpoint.
     void
     begin_steps()
     {
@@ -75,8 +74,8 @@ namespace Viscoplastic
     void
     write(const TimeStep &step);
 
-    /// Write a checkpoint at the end of a step if it is time for it, or a
-    /// signal has asked for it. Returns a sentence if the run is to end.
+    /// Write a checkpoint at the end of a step if one is due or a signal asks
+    /// for it. Returns a sentence if the run is to end.
     std::string
     keep_checkpoints(
       const parallel::distributed::Triangulation<dim> &triangulation,

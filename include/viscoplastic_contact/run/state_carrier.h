@@ -43,7 +43,7 @@ namespace Viscoplastic
 
 
 
-  /// To another mesh: the cells are marked when it is constructed.
+  /// Carries a state to another mesh, whose cells have been marked.
   template <int dim>
   class MeshChange : public StateCarrier<dim>
   {
@@ -67,7 +67,7 @@ namespace Viscoplastic
 
 
 
-  /// To another stage of construction: materials come and go.
+  /// Carries a state to another stage of construction: materials come and go.
   template <int dim>
   class StageChange : public StateCarrier<dim>
   {

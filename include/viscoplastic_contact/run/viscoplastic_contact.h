@@ -135,8 +135,8 @@ namespace Viscoplastic
     /// Change the mesh as its cells are marked.
     void
     change_mesh();
-    /// The same before the first step: initial data are those of the scene
-    /// again, not what the coarser mesh has made of them.
+    /// Change the mesh before the first step: projects the initial data of the
+    /// scene anew.
     void
     begin_on_finer_mesh();
     /// Begin the next stage of construction.
@@ -169,10 +169,10 @@ namespace Viscoplastic
     std::unique_ptr<Discretization<dim>> discretization;
     std::unique_ptr<TimeStepper<dim>>    time_stepper;
 
-    /// Of the passes of a run.
+    /// The position of the run in its passes.
     PassState pass;
 
-    /// The last state that will do, and the solve that has made the first one.
+    /// The last accepted state, and the report of the first equilibrium.
     EvaluatedState<dim> accepted;
     ContactReport       initial_report;
     bool                has_recorded_initial_state = false;

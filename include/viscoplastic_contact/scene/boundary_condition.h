@@ -42,27 +42,27 @@ namespace Viscoplastic
 
     /// Role displacement: the given components; empty ones are free.
     std::array<std::optional<Expression<dim>>, dim> displacement;
-    /// Roles traction and displacement, the latter in its free directions:
-    /// the given part of F, and the pressure p, which adds -p nu. Absent
-    /// where identically zero.
+    /// Roles traction and displacement (free components): the given part of the
+    /// traction F, and the pressure p, which adds -p nu. Absent where
+    /// identically zero.
     std::optional<VectorExpression<dim>> traction;
     std::optional<Expression<dim>>       pressure;
-    /// k_n and k_t of springs, which take what traction and pressure are given
-    /// for; absent where identically zero.
+    /// k_n and k_t of springs, stress per length, in the same roles; absent
+    /// where identically zero.
     std::optional<Expression<dim>> normal_stiffness, tangential_stiffness;
-    /// g of contact that opens; absent where identically zero.
+    /// The gap g of unilateral contact; absent where identically zero.
     std::optional<Expression<dim>> given_gap;
-    /// c and m of normal compliance.
+    /// c (stress per length^m) and m of normal compliance.
     std::optional<Expression<dim>> given_compliance;
     double                         compliance_exponent = 1.;
-    /// d of bilateral contact and contact that opens; absent where identically
-    /// zero.
+    /// d of bilateral contact, u_nu = d, or added to the gap; absent where
+    /// identically zero.
     std::optional<Expression<dim>> foundation_displacement;
-    /// w, whose tangential part slip is relative to; absent at rest.
+    /// The motion w of the foundation that slip is relative to; absent at rest.
     std::optional<VectorExpression<dim>> foundation_motion;
-    /// g of the law tresca.
+    /// The friction bound g of the law tresca, a stress.
     std::optional<Expression<dim>> friction_bound;
-    /// mu and S of the law coulomb.
+    /// mu and the normal stress S of the law coulomb.
     std::optional<Expression<dim>> friction_coefficient, normal_stress;
     /// The factor of friction bounds as a function of the slip rate; absent
     /// where it is one.
@@ -70,10 +70,10 @@ namespace Viscoplastic
     /// The exact solution from which the data are computed; null if they are
     /// given.
     const ExactSolution<dim> *solution;
-    /// Outward unit normal of a symmetry or contact piece, which is flat; in
-    /// contact that opens that of the foundation, into which it points.
+    /// The outward unit normal of a flat symmetry or contact piece; in
+    /// unilateral contact the direction into the foundation.
     Tensor<1, dim> normal;
-    /// Whether that is given, so that the piece may be curved.
+    /// Whether the normal is given, so that the piece may be curved.
     bool normal_is_given = false;
     /// Whether the piece is curved and has normals at its nodes instead, see
     /// SurfaceNormals: only in contact with another body.
@@ -87,14 +87,14 @@ namespace Viscoplastic
              contact_law == ContactLaw::bilateral;
     }
 
-    /// Whether contact opens and closes here.
+    /// Whether contact opens and closes: unilateral, rigid or compliant.
     bool
     is_unilateral() const
     {
       return contact_law == ContactLaw::unilateral || gives_way();
     }
 
-    /// Whether the foundation gives way.
+    /// Whether the foundation is compliant (normal compliance).
     bool
     gives_way() const
     {
@@ -105,21 +105,21 @@ namespace Viscoplastic
     double
     compliance(const Point<dim> &x) const;
 
-    /// Whether the friction bound is that of the pressure which comes out.
+    /// Whether the friction bound follows from the computed pressure.
     bool
     has_computed_pressure() const
     {
       return is_unilateral() && friction_law == FrictionLaw::coulomb;
     }
 
-    /// Whether bound() is the friction bound, whatever the solution.
+    /// Whether the friction bound is a given function of x and t, bound().
     bool
     has_given_bound() const
     {
       return has_friction() && !has_computed_pressure() && !slip_rate_factor;
     }
 
-    /// g + d of contact that opens.
+    /// The gap g + d of unilateral contact, a length.
     double
     gap(const Point<dim> &x, const double t) const
     {
@@ -158,7 +158,7 @@ namespace Viscoplastic
       return friction_law == FrictionLaw::glued;
     }
 
-    /// Whether there is F, p or S.
+    /// Whether a traction, pressure or normal stress is given.
     bool
     carries_load() const
     {
@@ -206,7 +206,7 @@ namespace Viscoplastic
       return w - (w * normal) * normal;
     }
 
-    /// d nu + sliding(), at a point with this normal nu.
+    /// The displacement d nu + sliding() of glued contact.
     Tensor<1, dim>
     glued_displacement(const Point<dim>     &x,
                        const Tensor<1, dim> &outward_normal,
@@ -236,7 +236,7 @@ namespace Viscoplastic
       return all || role == BoundaryRole::clamped || is_glued();
     }
 
-    /// All data of the condition, those of the friction bound included.
+    /// All expressions of the condition, those of the friction bound included.
     std::vector<const Expression<dim> *>
     data() const;
 
@@ -250,7 +250,7 @@ namespace Viscoplastic
     double
     bound(const Point<dim> &x, const double t) const;
 
-    /// f(v), by which the bound is multiplied at the slip rate v >= 0. Throws
+    /// The factor f(v) of the friction bound at the slip rate v >= 0. Throws
     /// ExcMessage where it is negative.
     double
     bound_factor(const double slip_rate) const;
@@ -270,7 +270,7 @@ namespace Viscoplastic
     }
 
   private:
-    /// Whether F is sigma nu of the solution.
+    /// Whether the traction is sigma nu of the exact solution.
     bool
     has_derived_traction() const
     {

@@ -26,7 +26,7 @@ namespace Viscoplastic
   class ExactSolution
   {
   public:
-    /// Throws ExcMessage with a sentence for the user. @p end_time is T.
+    /// @p end_time: T. Throws ExcMessage with a sentence for the user.
     ExactSolution(const ExactSolutionParameters &parameters,
                   const double                   end_time,
                   const PlaneModel plane_model = PlaneModel::strain);

@@ -45,7 +45,7 @@ namespace Viscoplastic
   struct KinksOfScene
   {
     std::vector<Kink> kinks; // ascending
-    /// The entries that have them.
+    /// The entries whose data have kinks.
     std::vector<std::string> entries;
   };
 

@@ -76,12 +76,12 @@ namespace Viscoplastic
     const std::string law_name;
     /// Whether this stands for the material where it is absent.
     const bool is_absent;
-    /// When the material comes and goes; -infinity and infinity for one that is
-    /// always there.
+    /// The times at which the material is added and removed; -infinity and
+    /// infinity if never.
     double added_at, removed_at;
     /// The law of flow; null for an elastic material.
     std::unique_ptr<const ViscoplasticLaw> law;
-    /// alpha; absent where the material does not expand.
+    /// Thermal expansion alpha; absent where the material does not expand.
     std::optional<Expression<dim>> thermal_expansion;
 
   private:

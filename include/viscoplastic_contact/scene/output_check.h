@@ -10,9 +10,9 @@
 
 namespace Viscoplastic
 {
-  /// Hold what a scene records against its mesh: points and lines have to be in
-  /// the body, boundaries, materials and fields to exist. Returns what is
-  /// allowed but means nothing, a sentence each. Collective. Throws ExcMessage.
+  /// Check the output places of a scene against its mesh: points and lines lie
+  /// in the body; boundaries, materials and fields exist. Returns warnings, a
+  /// sentence each. Throws ExcMessage. Collective.
   template <int dim>
   std::vector<std::string>
   check_output_places(

@@ -61,12 +61,10 @@ namespace Viscoplastic
   std::vector<Point<dim>>
   read_output_points(const std::string &text);
 
-  /// The lines of `Output/Lines'.
   template <int dim>
   std::vector<OutputLine<dim>>
   read_output_lines(const std::string &text);
 
-  /// The integrals of `Output/Integrals'.
   std::vector<OutputIntegral>
   read_output_integrals(const std::string &text, const PlaceNames &names);
 } // namespace Viscoplastic

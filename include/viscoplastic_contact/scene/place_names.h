@@ -82,7 +82,6 @@ namespace Viscoplastic
     std::string
     words(const std::string &column) const;
 
-    /// All places that have one.
     std::map<PlaceNumber, std::string> names;
 
   private:

@@ -33,7 +33,7 @@ namespace Viscoplastic
     Kind kind;
     /// The boundary id of a force, the number of a point; and x, y or z.
     unsigned int number = 0, component = 0;
-    /// The column.
+    /// The column of statistics.csv.
     std::string name;
 
     bool

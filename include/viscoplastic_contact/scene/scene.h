@@ -50,7 +50,7 @@ namespace Viscoplastic
     std::vector<std::string>
     changed_defaults() const;
 
-    /// Known after inspect(), like the effects.
+    /// The material of cells in the present stage. Known after inspect().
     const Material<dim> &
     material(const types::material_id id) const
     {
@@ -148,14 +148,14 @@ namespace Viscoplastic
         [](const auto &b) { return b.against.has_value(); });
     }
 
-    /// Whether a boundary is what another one is in contact with.
+    /// Whether another boundary is in contact with this one (its primary side).
     bool
     is_other_side(const types::boundary_id id) const
     {
       return on_any_boundary([id](const auto &b) { return b.against == id; });
     }
 
-    /// Whether there is a G: laws, or the source of a manufactured solution.
+    /// Whether z has a rate G: of laws, or of a manufactured solution.
     bool
     has_viscosity() const
     {
@@ -224,7 +224,7 @@ namespace Viscoplastic
                          });
     }
 
-    /// Whether it may have done so before t = 0.
+    /// Whether thermal strain at t = 0 may not be zero.
     bool
     has_initial_thermal_stress() const
     {
@@ -383,12 +383,12 @@ namespace Viscoplastic
     std::vector<Support<dim>>                            supports;
     /// The materials that some cell has in some stage.
     std::vector<std::unique_ptr<const Material<dim>>> materials;
-    /// b, u0, sigma0; absent where identically zero.
+    /// Data; absent where identically zero.
     std::optional<VectorExpression<dim>> body_force;
     std::optional<VectorExpression<dim>> initial_displacement, initial_stress;
     /// N(t) or eps_zz(t): one of them in generalized plane strain.
     std::optional<Expression<dim>> axial_force, axial_strain;
-    /// T; null in scenes that give none.
+    /// The temperature T(x,t); null in scenes without.
     std::unique_ptr<const Temperature<dim>> temperature;
     /// Points, lines and integrals at which fields are recorded.
     std::vector<Point<dim>>      output_points;
@@ -405,8 +405,8 @@ namespace Viscoplastic
     void
     inspect_boundary_ids(const std::set<types::boundary_id> &ids) const;
 
-    /// Refuse edges in curved contact between two bodies, by the angle at which
-    /// the faces of a side meet, or doubt that there are none.
+    /// Refuse curved contact boundaries with edges, by the largest angle
+    /// between faces that meet; warn where there may be some.
     void
     inspect_curve(const types::boundary_id id, const double angle);
 
@@ -414,17 +414,17 @@ namespace Viscoplastic
     inspect_flatness(
       const parallel::distributed::Triangulation<dim> &triangulation);
 
-    /// That the section of a body of revolution lies on one side of its axis
-    /// and is held there. Collective.
+    /// Refuse sections of bodies of revolution that cross the axis or are free
+    /// to move off it. Collective.
     void
     inspect_axis(
       const parallel::distributed::Triangulation<dim> &triangulation) const;
 
-    /// Entries of boundaries without effect.
+    /// Warn of boundary entries without effect.
     void
     inspect_unused_entries();
 
-    /// Pieces with prescribed displacement that touch Gamma_3.
+    /// Warn of pieces with prescribed displacement that touch Gamma_3.
     void
     inspect_junctions(
       const parallel::distributed::Triangulation<dim> &triangulation);
@@ -432,7 +432,7 @@ namespace Viscoplastic
     void
     make_materials(const std::set<types::material_id> &ids);
 
-    /// A temperature that nothing depends on, or in the wrong unit.
+    /// Warn of temperatures without effect; refuse wrong units.
     void
     inspect_temperature(const Triangulation<dim> &triangulation);
 
@@ -440,13 +440,13 @@ namespace Viscoplastic
     void
     find_stages(const parallel::distributed::Triangulation<dim> &triangulation);
 
-    /// Whether contact changes with them; refuse what cannot change.
+    /// Find whether contact changes with stages; refuse what cannot.
     void
     inspect_contact_of_stages(
       const std::set<types::material_id>              &changing,
       const parallel::distributed::Triangulation<dim> &triangulation);
 
-    /// What follows from an exact solution, and refuse it from elsewhere.
+    /// Set what follows from an exact solution; refuse what is given besides.
     void
     derive_data();
 
@@ -454,7 +454,7 @@ namespace Viscoplastic
     void
     read_axial_datum();
 
-    /// The other sides of contact between bodies.
+    /// Set the primary boundaries of contact between bodies.
     void
     find_contact_pairs();
     void
@@ -464,7 +464,7 @@ namespace Viscoplastic
     struct Entry
     {
       const Material<dim> *material;
-      /// What stands for it where it is absent; null if it never is.
+      /// The material in its place where it is absent; null if it never is.
       const Material<dim> *absent = nullptr;
       /// The first stage that has it, and the first after these.
       unsigned int begin = 0, end = numbers::invalid_unsigned_int;

@@ -40,14 +40,14 @@ namespace Viscoplastic
   };
 
 
-  /// The supports of the section `Supports'. Throws ExcMessage.
+  /// Read the section `Supports'. Throws ExcMessage.
   template <int dim>
   std::vector<Support<dim>>
   read_supports(const SupportParameters &parameters);
 
 
-  /// Find the vertices of points and see whether boundaries meet. Returns what
-  /// is allowed but should be known, a sentence each. Throws ExcMessage.
+  /// Find the vertices of points and the edges where boundaries meet. Returns
+  /// warnings, a sentence each. Throws ExcMessage.
   template <int dim>
   std::vector<std::string>
   place_supports(

@@ -31,11 +31,11 @@ namespace Viscoplastic
     /// T_0, where there is no thermal strain; nothing for the temperature of
     /// each place at t = 0.
     const std::optional<double> reference;
-    /// R, in the units of the scene.
+    /// The gas constant R, in the units of the scene.
     const double gas_constant;
   };
 
-  /// Null if the entries give none.
+  /// The temperature that the entries give; null if none.
   template <int dim>
   std::unique_ptr<const Temperature<dim>>
   make_temperature(const TemperatureParameters &parameters, const Units &units);

@@ -49,8 +49,8 @@ namespace Viscoplastic
     }
 
   private:
-    /// (3.20) for the z of @p solution, whose u, sets and report are set; the
-    /// start is what @p guess says of velocities and sets.
+    /// Solve (3.20) with the z of @p solution for its u, active sets and
+    /// report, starting from the velocity and sets of @p guess.
     void
     solve(const StepProblem<dim> &problem,
           const State<dim>       &guess,
@@ -78,7 +78,7 @@ namespace Viscoplastic
                   const FlowRate   &rate,
                   const TimeStep   &time_step);
 
-  /// Whether a step of size k is within that limit, up to rounding.
+  /// Whether k <= 2/r up to rounding.
   inline bool
   is_stable(const FlowRate &rate, const double k)
   {

@@ -62,13 +62,13 @@ namespace Viscoplastic
   private:
     class Newton;
 
-    /// The solution of a step without change, of a body that does not flow
-    /// either; nothing if it is none. Collective.
+    /// The old state as the solution, if no datum changes and nothing flows;
+    /// otherwise nothing. Collective.
     std::optional<StepSolution<dim>>
     rest(const StepProblem<dim> &problem) const;
 
-    /// The matrix and the solver for tangents at a strain, as a function of
-    /// what is given and the mesh alone.
+    /// Set up tangents, matrix and solver at a strain and z; the result depends
+    /// on no earlier step.
     void
     linearize(const DistributedVector              &ghosted_u,
               const IrreversibleStress             &z,

@@ -15,8 +15,8 @@ namespace Viscoplastic
   have_symmetric_tangents(const FlowLaws<dim> &laws, const double t);
 
 
-  /// A place where Newton's method for a step is: u in frames, the same
-  /// Cartesian and with ghosts, z(eps(u)), and what contact does there.
+  /// An iterate of Newton's method for a step: u in nodal frames, and Cartesian
+  /// with ghosts, z(eps(u)), and the contact state.
   template <int dim>
   struct NewtonIterate
   {
@@ -45,7 +45,7 @@ namespace Viscoplastic
   class NonsymmetricCorrection
   {
   public:
-    /// @p solver is that of the tangent matrix. All arguments stay in use.
+    /// @p solver: of the symmetric matrix. All arguments stay in use.
     NonsymmetricCorrection(const Discretization<dim> &discretization,
                            const StepProblem<dim>    &problem,
                            BulkSolver                &solver);
@@ -58,7 +58,7 @@ namespace Viscoplastic
 
     struct Result
     {
-      /// The share of the correction that was taken; 0 if none is of use.
+      /// The step length of the line search; 0 if there is no descent.
       double share;
       /// Linear iterations: of GMRES, or of the preconditioner's solves.
       unsigned int iterations;
@@ -75,8 +75,8 @@ namespace Viscoplastic
     struct Operator;
     struct Preconditioner;
 
-    /// The residual, less the forces of multipliers that fit it best, which
-    /// @p iterate gets.
+    /// The residual minus the forces of the multipliers nearest to it, which @p
+    /// iterate gets.
     DistributedVector
     residual(NewtonIterate<dim> &iterate) const;
 
@@ -84,8 +84,8 @@ namespace Viscoplastic
     double
     dual_norm(const DistributedVector &r) const;
 
-    /// @p from + share w, with slips that would reverse brought to rest; z is
-    /// left.
+    /// @p from + share w, where slips that would reverse stop instead; z is not
+    /// evaluated.
     NewtonIterate<dim>
     move(const NewtonIterate<dim> &from,
          const DistributedVector  &w,

@@ -26,7 +26,7 @@ namespace Viscoplastic
     const DistributedMatrix &
     attach(const DistributedMatrix &matrix);
 
-    /// Add the load of springs that carry nothing at @p u.
+    /// Add to a load that of springs which are relaxed at @p u.
     void
     add_load(const DistributedVector &u, DistributedVector &load) const
     {
@@ -71,12 +71,31 @@ namespace Viscoplastic
     HeldBody
     held_body(const StepProblem<dim> &problem) const;
 
-    /// Whether nothing moves a body: neither loads nor a foundation, and the
-    /// forces of contact were rounding. Collective.
+    /// Whether neither loads nor a foundation do work on a rigid motion, and
+    /// old contact forces were rounding. Collective.
     bool
     rests(const StepProblem<dim>  &problem,
           const HeldBody          &body,
           const DistributedVector &right_side) const;
+
+    /// What springs hold after a solve: their energy norm, that of the
+    /// solution, and whether it is no more than the loads balance.
+    struct Held
+    {
+      double in_springs, size;
+      bool   in_balance;
+    };
+
+    /// Add what they hold of @p change, the last one of @p u, to the error of
+    /// @p report; @p whole: how far the body was before. Collective.
+    Held
+    measure(const StepProblem<dim>  &problem,
+            const DistributedVector &right_side,
+            const double             tolerance,
+            const DistributedVector &u,
+            const DistributedVector &change,
+            const DistributedVector &whole,
+            ContactReport           &report) const;
 
     /// Move u and the rest of the springs as a whole to where the loads are in
     /// balance with soft ground. Collective.
@@ -128,8 +147,8 @@ namespace Viscoplastic
     /// The rigid motions that only contact can prevent.
     const std::vector<DistributedVector> motions;
     std::vector<DistributedVector>       orthonormal_motions;
-    /// As many components of contact nodes as that, which can hold the body:
-    /// positions among the owned degrees of freedom.
+    /// Where springs act: components of contact nodes, as many as motions, that
+    /// constrain these; positions among the owned degrees of freedom.
     std::vector<unsigned int> supports;
     const DistributedMatrix  *singular_matrix = nullptr;
     DistributedMatrix         regular_matrix;

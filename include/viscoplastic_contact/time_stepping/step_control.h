@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
+#include <viscoplastic_contact/base/messages.h>
 #include <viscoplastic_contact/parameters/parameters.h>
 #include <viscoplastic_contact/parameters/time_schedule.h>
 
 #include <algorithm>
+#include <new>
 #include <optional>
 #include <stdexcept>
 #include <string>
@@ -23,11 +25,36 @@ namespace Viscoplastic
   };
 
 
-  /// Because it is beyond the stability limit of its scheme.
+  /// A step beyond the stability limit of its scheme.
   struct StepBeyondStability : public StepFailure
   {
     using StepFailure::StepFailure;
   };
+
+
+  /// Call @p work and throw what goes wrong as a failure of step @p n to time
+  /// @p t.
+  template <typename Work>
+  auto
+  as_part_of_step(const unsigned int n, const double t, const Work &work)
+  {
+    try
+      {
+        return work();
+      }
+    catch (const std::bad_alloc &)
+      {
+        throw;
+      }
+    catch (const StepFailure &)
+      {
+        throw; // which names the step
+      }
+    catch (...)
+      {
+        throw StepFailure(n, t, reason_of_current_exception());
+      }
+  }
 
 
   /// The error measures by which a tried step is accepted or rejected.
@@ -45,7 +72,7 @@ namespace Viscoplastic
   };
 
 
-  /// Numbers of accepted and rejected steps, for the closing words of a run.
+  /// Numbers of rejected steps by reason, for the summary of a run.
   struct StepCounts
   {
     unsigned int rejected = 0, events = 0, failed = 0;
@@ -86,9 +113,9 @@ namespace Viscoplastic
   class StepControl
   {
   public:
-    /// @p order of the scheme. @p output_interval: 0 for none. @p
-    /// tolerance_of_run: the part of the time steps, 0 if the run has none.
-    /// Throws ExcMessage.
+    /// @p order: of the scheme in k. @p output_interval: 0 for none. @p
+    /// tolerance_of_run: the share of time steps in the tolerance, 0 without
+    /// one. Throws ExcMessage.
     StepControl(const StepControlParameters &parameters,
                 const StiffnessPolicy        stiffness_policy,
                 const TimeSchedule          &schedule,
@@ -109,8 +136,8 @@ namespace Viscoplastic
       has_estimate = value;
     }
 
-    /// End steps at these times, too; does nothing if the steps are those of
-    /// the phases. A jump gets a short step of its own.
+    /// Also end steps at these times, if they are adaptive. A jump gets a short
+    /// step of its own.
     void
     land_on(const std::vector<double> &kinks, const std::vector<double> &jumps);
 
@@ -223,7 +250,6 @@ namespace Viscoplastic
       return n;
     }
 
-    /// Write to, or read from, an archive.
     template <typename Archive>
     void
     exchange(Archive &archive)
@@ -239,7 +265,7 @@ namespace Viscoplastic
     const bool passes_limit;
 
   private:
-    /// What it remembers of the steps.
+    /// The state of the controller between steps.
     struct Memory
     {
       /// The end of the last accepted step.
@@ -254,7 +280,7 @@ namespace Viscoplastic
       /// The end of a step that was rejected for an event, which has not been
       /// met yet.
       double event_before = 0.;
-      /// Of the contributions of all steps to the time error.
+      /// The sum of the indicators of all steps.
       double unsigned_sum = 0.;
       /// The step size that the error of the last accepted step would have
       /// allowed, and the logarithm of its growth from step to step: a mean
@@ -304,9 +330,9 @@ namespace Viscoplastic
     std::vector<double>          dual_times, dual_norms;
     bool                         has_estimate = true;
 
-    /// Now, and before the last step was accepted.
+    /// The present state, and that before the last step was accepted.
     Memory present, before;
-    /// What a step that is repeated has left on the mesh before.
+    /// The state that the step to be repeated has left on the mesh before.
     std::optional<Memory> verdict;
     StepCounts            n;
   };

@@ -55,8 +55,8 @@ namespace Viscoplastic
 
 
 
-  /// Whether the old solution is that of the problem, too, if z does not
-  /// change; see StepProblem. Collective.
+  /// Whether load, bounds and prescribed displacements of the step are those of
+  /// the state before. Collective.
   template <int dim>
   bool
   data_are_unchanged(const Discretization<dim> &discretization,

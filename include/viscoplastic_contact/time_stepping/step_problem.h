@@ -25,7 +25,7 @@ namespace Viscoplastic
   struct StepProblem
   {
     TimeStep time_step;
-    /// L(t_n, .).
+    /// The load L(t_n, .) in nodal frames.
     Load<dim> load;
     /// rho_c(t_n) of each friction point, which make j_n, and the distance d_c
     /// to each obstacle.
@@ -33,7 +33,7 @@ namespace Viscoplastic
     /// The increment of the foundation's displacement at each point, see
     /// ContactState::foundation_step; empty if no foundation moves.
     std::vector<Tensor<1, 2>> foundation_step;
-    /// Relative to the solution, at which the iterations stop.
+    /// The error at which iterations stop, relative to the solution.
     double                  tolerance;
     const SolverParameters &parameters;
     /// The state at t_{n-1}, which stays as it is, and G there (null where the
@@ -56,9 +56,9 @@ namespace Viscoplastic
     /// does.
     std::vector<double> slip_rates = {};
 
-    /// How long a body may be expected to go on with the velocity of a state:
-    /// for this step, but not far beyond the increment that it is of, which may
-    /// have been a jump in a tiny step. Steps grow by a factor of two.
+    /// The time for which the velocity of a state is extrapolated: at most this
+    /// step, and not far beyond the step it is from, which may have been a jump
+    /// in a tiny step.
     double
     time_ahead(const State<dim> &state) const
     {
@@ -72,7 +72,7 @@ namespace Viscoplastic
       return std::sqrt(2. * std::max(0., old.forces.strain_energy));
     }
 
-    /// u_{n-1} in frames.
+    /// u_{n-1} in nodal frames.
     const DistributedVector &
     old_u() const
     {
@@ -99,7 +99,7 @@ namespace Viscoplastic
     /// Whether the state is that of the step before, without a solve.
     bool is_unchanged = false;
 
-    /// Take notice of G somewhere in the step.
+    /// Take stability limit and capped volume from G within the step.
     void
     note(const FlowRate &rate)
     {
@@ -131,8 +131,7 @@ namespace Viscoplastic
       state.history   = problem.old.state.history;
     }
 
-    /// The body stays where it is: the state becomes the old one, at rest, but
-    /// for z.
+    /// Make the state the old one with zero velocity; z stays.
     void
     stay(const StepProblem<dim>     &problem,
          const AdmissibleSpace<dim> &space,

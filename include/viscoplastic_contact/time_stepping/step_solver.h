@@ -11,9 +11,9 @@
 
 namespace Viscoplastic
 {
-  /// Solves the variational inequality (3.20) of a step for u_n, the friction
-  /// multipliers and the sets, with a given matrix: that of a(.,.), or of a
-  /// tangent. Owns the linear solver for that matrix.
+  /// Solves the variational inequality (3.20) of a step for u_n, the
+  /// multipliers and the active sets, with the matrix of a(.,.) or of a
+  /// tangent, whose linear solver it owns.
   template <int dim>
   class StepSolver
   {
@@ -26,14 +26,12 @@ namespace Viscoplastic
     set_matrix(const DistributedMatrix &matrix,
                const double             max_poissons_ratio);
 
-    /// Forget the linear solver.
     void
     clear()
     {
       bulk_solver.reset();
     }
 
-    /// Whether there is a linear solver.
     bool
     is_ready() const
     {
@@ -90,15 +88,15 @@ namespace Viscoplastic
                      State<dim>              &state) const;
 
   private:
-    /// What a solve is in proportion to.
+    /// The vectors to which the solution of a solve is proportional.
     struct Data
     {
       const DistributedVector &old_u, &load, &right_side;
       const Vector<double>    &foundation_step; // on the face
     };
 
-    /// solve() with the pressure of the step itself in Coulomb's law, or with
-    /// given bounds, by solves with given bounds.
+    /// solve() by a fixed point iteration of solves with given bounds, for
+    /// Coulomb's law with the pressure of the step itself.
     ContactReport
     find_fixed_point(const StepProblem<dim>  &problem,
                      const DistributedVector &right_side,
@@ -106,8 +104,8 @@ namespace Viscoplastic
                      DistributedVector       &u,
                      ContactState            &contact);
 
-    /// By how much rounding at the solution @p u may change the sum of the
-    /// bounds that its pressures make. Collective.
+    /// A bound on the rounding error of the sum of the friction bounds that
+    /// follow from the pressures of @p u. Collective.
     double
     rounding_of_bounds(const StepProblem<dim>  &problem,
                        const DistributedVector &right_side,
@@ -132,8 +130,8 @@ namespace Viscoplastic
                       ContactState            &contact,
                       const CoulombLaw        *law = nullptr);
 
-    /// The same with the matrix of the linear solver, and for a displacement
-    /// @p old_u of the step before.
+    /// solve() with a regular matrix, for a displacement @p old_u of the step
+    /// before.
     ContactReport
     solve_regular(const StepProblem<dim>  &problem,
                   const DistributedVector &old_u,

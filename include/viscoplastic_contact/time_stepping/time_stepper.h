@@ -9,12 +9,10 @@
 
 namespace Viscoplastic
 {
-  /// A step that will do, with all that was learnt about it.
   template <int dim>
   struct AcceptedStep : public StepOutcome
   {
-    TimeStep time_step;
-    /// The state that the step leads to.
+    TimeStep            time_step;
     EvaluatedState<dim> end;
     /// The number of longer steps that were tried and rejected.
     unsigned int n_rejections = 0;
@@ -43,8 +41,8 @@ namespace Viscoplastic
   template <int dim>
   struct StepperMemory
   {
-    /// Of the solvers of steps, of a(.,.) and of the tangents of a quantity;
-    /// nothing where all solves of one are alike, or where there is none.
+    /// Preconditioner states: of the solver of steps, of a(.,.), and of the
+    /// tangents of a quantity; absent where there is nothing to remember.
     std::array<std::optional<PreconditionerState>, 3> preconditioners;
     /// See QuantityEstimator::linearized_at().
     std::optional<State<dim>> linearized;
@@ -99,7 +97,7 @@ namespace Viscoplastic
     void
     estimate_quantity(EvaluatedState<dim> &initial);
 
-    /// What is to be kept in checkpoints beside the accepted state. Collective.
+    /// The part of a checkpoint beside the accepted state. Collective.
     StepperMemory<dim>
     memory() const;
 
@@ -155,7 +153,7 @@ namespace Viscoplastic
     StepSolver<dim> &
     solver_of_elasticity();
 
-    /// A solver for other matrices; @p is_new: than the last one. Collective.
+    /// The solver of a tangent; @p is_new: another one than last. Collective.
     BulkSolver &
     solver_of(const TangentMatrix<dim> &tangent, const bool is_new);
 
@@ -172,9 +170,9 @@ namespace Viscoplastic
     std::unique_ptr<StepMethod<dim>> step_method;
     /// Null where a scene asks for no quantity.
     std::unique_ptr<QuantityEstimator<dim>> quantity_estimator;
-    /// If the steps have other matrices; made when it is needed.
+    /// Of a(.,.) where steps have other matrices; made when it is needed.
     std::unique_ptr<StepSolver<dim>> elastic_solver;
-    /// Of the matrices that the estimate of a displacement asks for.
+    /// The solver of the tangents of a quantity's dual problem.
     std::unique_ptr<StepSolver<dim>> tangent_solver;
   };
 } // namespace Viscoplastic

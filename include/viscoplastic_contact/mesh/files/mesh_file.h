@@ -21,8 +21,7 @@ namespace Viscoplastic
       /// around the lower and then around the upper face. Only the first 2, 4
       /// or 8 are used.
       std::array<unsigned int, 8> nodes{};
-      /// The id of the material or of the boundary.
-      unsigned int id = 0;
+      unsigned int                id = 0;
       /// The line of the file that has it, for error messages.
       unsigned int line = 0;
     };

@@ -65,7 +65,6 @@ namespace Viscoplastic
     const Shape &
     shape(const std::map<std::string, Shape> &shapes);
 
-    /// Read the numbers of @p n nodes.
     std::vector<long>
     node_numbers(const unsigned int n)
     {
@@ -75,7 +74,6 @@ namespace Viscoplastic
       return result;
     }
 
-    /// Read the three coordinates of a node.
     Point<3>
     coordinates()
     {
@@ -118,8 +116,7 @@ namespace Viscoplastic
     const unsigned int dim;
     MeshFile           mesh;
     /// The line of the word that was read last, counted from 1.
-    unsigned int line = 1;
-    /// Whether the file has elements of each dimension.
+    unsigned int        line = 1;
     std::array<bool, 4> has_dimension{};
 
   private:

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <deal.II/grid/cell_id.h>
-
 #include <viscoplastic_contact/base/messages.h>
 #include <viscoplastic_contact/checkpoint/checkpoint.h>
 #include <viscoplastic_contact/mesh/cell_order.h>
@@ -9,51 +7,6 @@ namespace Viscoplastic
 {
   namespace
   {
-    /// The number of refinement levels that p4est, and therefore CellId, has.
-    constexpr unsigned int
-    max_level(const unsigned int dim)
-    {
-      return dim == 2 ? 29 : 18;
-    }
-
-
-
-    void
-    require(const bool condition)
-    {
-      AssertThrow(condition,
-                  ExcMessage("The checkpoint contradicts itself or the mesh."));
-    }
-
-
-
-    template <int dim>
-    std::vector<CellId>
-    unpack_mesh(const std::string &bytes, const unsigned int n_coarse_cells)
-    {
-      BinaryReader              archive(bytes);
-      std::vector<unsigned int> words;
-      archive                  &words;
-      CellId::binary_type       binary;
-      require(archive.is_at_end() && words.size() % binary.size() == 0);
-      std::vector<CellId> cells;
-      cells.reserve(words.size() / binary.size());
-      for (auto word = words.begin(); word != words.end();
-           word += binary.size())
-        {
-          std::copy_n(word, binary.size(), binary.begin());
-          // CellId takes for granted what it reads: coarse cell, level and
-          // dimension, children.
-          require(binary[0] < n_coarse_cells && binary[1] % 4 == dim &&
-                  binary[1] / 4 <= max_level(dim));
-          cells.emplace_back(binary);
-          require(cells.back().template to_binary<dim>() == binary);
-        }
-      return cells;
-    }
-
-
-
     /// The nodes of the face by their first degrees of freedom.
     template <int dim>
     std::map<types::global_dof_index, unsigned int>
@@ -148,71 +101,6 @@ namespace Viscoplastic
       return result;
     }
   } // namespace
-
-
-
-  template <int dim>
-  std::string
-  pack_mesh(const parallel::distributed::Triangulation<dim> &triangulation)
-  {
-    std::vector<unsigned int> words;
-    for (const auto &cell : owned_cells(triangulation))
-      {
-        const auto binary = cell->id().template to_binary<dim>();
-        words.insert(words.end(), binary.begin(), binary.end());
-      }
-    BinaryWriter archive;
-    archive     &words;
-    return archive.bytes();
-  }
-
-
-
-  template <int dim>
-  void
-  restore_mesh(const std::vector<std::string>            &parts,
-               parallel::distributed::Triangulation<dim> &triangulation)
-  {
-    std::vector<CellId> leaves;
-    for (const std::string &part : parts)
-      {
-        const auto cells = unpack_mesh<dim>(part, triangulation.n_cells(0));
-        leaves.insert(leaves.end(), cells.begin(), cells.end());
-      }
-    // A cell comes before its descendants, and these before the next cell.
-    std::sort(leaves.begin(), leaves.end());
-
-    const MPI_Comm communicator = triangulation.get_communicator();
-    for (unsigned int pass = 0; pass < 3 * max_level(dim); ++pass)
-      {
-        bool differs = false, contradicts = false;
-        for (const auto &cell : owned_cells(triangulation))
-          {
-            // The leaf before `next' is the cell itself, or contains it, or
-            // ends where the cell begins.
-            const CellId id = cell->id();
-            const auto   next =
-              std::upper_bound(leaves.begin(), leaves.end(), id);
-            if (next != leaves.begin() && *(next - 1) == id)
-              continue;
-            differs = true;
-            if (next != leaves.end() && id.is_ancestor_of(*next))
-              cell->set_refine_flag();
-            else if (next != leaves.begin() && (next - 1)->is_ancestor_of(id))
-              cell->set_coarsen_flag();
-            else
-              contradicts = true;
-          }
-        require(!Utilities::MPI::logical_or(contradicts, communicator));
-        if (!Utilities::MPI::logical_or(differs, communicator))
-          {
-            require(triangulation.n_global_active_cells() == leaves.size());
-            return;
-          }
-        triangulation.execute_coarsening_and_refinement();
-      }
-    require(false); // neighbors differ by more than one level
-  }
 
 
 
@@ -316,6 +204,42 @@ namespace Viscoplastic
 
 
 
+    /// Read the values of all fields at the vertices with these bits of a cell,
+    /// which is null if this rank does not know it, from position @p next on.
+    /// Returns how many of the vertices are nodes of this rank.
+    template <typename Cell>
+    unsigned int
+    read_nodes(const std::uint8_t              vertices,
+               const Cell *const               cell,
+               const IndexSet                 &owned,
+               const std::vector<double>      &nodal,
+               std::size_t                    &next,
+               std::vector<DistributedVector> &values)
+    {
+      constexpr unsigned int dim = Cell::AccessorType::dimension;
+      unsigned int           n   = 0;
+      for (const unsigned int v : GeometryInfo<dim>::vertex_indices())
+        if ((vertices >> v & 1) != 0)
+          {
+            const std::size_t first = next;
+            next += values.size() * dim;
+            require_sense(next <= nodal.size());
+            if (cell == nullptr)
+              continue;
+            const auto dof = (*cell)->vertex_dof_index(v, 0);
+            if (!owned.is_element(dof))
+              continue;
+            for (unsigned int f = 0; f < values.size(); ++f)
+              std::copy_n(&nodal[first + f * dim],
+                          dim,
+                          values[f].begin() + owned.index_within_set(dof));
+            ++n;
+          }
+      return n;
+    }
+
+
+
     /// Takes contact at nodes out of what a rank has packed, node by node.
     class ContactReader
     {
@@ -340,9 +264,8 @@ namespace Viscoplastic
            const std::map<types::global_dof_index, unsigned int> &face_nodes)
       {
         unsigned int n = 0;
-        for (unsigned int v = 0;
-             v < GeometryInfo<Cell::AccessorType::dimension>::vertices_per_cell;
-             ++v)
+        for (const unsigned int v :
+             GeometryInfo<Cell::AccessorType::dimension>::vertex_indices())
           if ((vertices >> v & 1) != 0)
             {
               const auto node =
@@ -369,16 +292,16 @@ namespace Viscoplastic
       void
       read(const std::optional<unsigned int> node)
       {
-        require(next_node < packed.n_points.size());
+        require_sense(next_node < packed.n_points.size());
         const unsigned int n_points = packed.n_points[next_node++];
         const std::size_t  value = next_value, point = next_point;
         next_point += n_points;
         next_value += n_points * 5 + truncations.size() * 18;
-        require(next_point <= packed.sticks.size() &&
-                next_value <= packed.values.size());
+        require_sense(next_point <= packed.sticks.size() &&
+                      next_value <= packed.values.size());
         if (!node)
           return;
-        require(n_points == layout.n_node_points(*node));
+        require_sense(n_points == layout.n_node_points(*node));
         const double *from = packed.values.data() + value;
         for_each_value(layout, *node, contact, truncations, [&](double &to) {
           to = *from++;
@@ -439,40 +362,23 @@ namespace Viscoplastic
         BinaryReader archive(packed.fields[p]);
         part.exchange(archive);
         const auto &[vertices, nodal, samples, estimate, points] = part;
-        require(archive.is_at_end() && vertices.size() == ids.size() &&
-                points.vertices.size() == (face ? ids.size() : 0) &&
-                samples.size() == sampled.size() * n_z * ids.size() &&
-                estimate.size() == (packed.has_estimate ? ids.size() : 0));
+        require_sense(archive.is_at_end() && vertices.size() == ids.size() &&
+                      points.vertices.size() == (face ? ids.size() : 0) &&
+                      samples.size() == sampled.size() * n_z * ids.size() &&
+                      estimate.size() ==
+                        (packed.has_estimate ? ids.size() : 0));
         ContactReader of_nodes(points, layout, state.contact, truncations);
         std::size_t   next = 0;
         for (std::size_t i = 0; i < ids.size(); ++i)
           {
-            const auto found    = cells.find(ids[i]);
-            const bool is_known = found != cells.end();
-            for (unsigned int v = 0; v < GeometryInfo<dim>::vertices_per_cell;
-                 ++v)
-              if ((vertices[i] >> v & 1) != 0)
-                {
-                  require(next + n_fields * dim <= nodal.size());
-                  const auto dof =
-                    is_known ? found->second.first->vertex_dof_index(v, 0) :
-                               numbers::invalid_dof_index;
-                  if (is_known && space.owned.is_element(dof))
-                    {
-                      const auto first = space.owned.index_within_set(dof);
-                      for (unsigned int f = 0; f < n_fields; ++f)
-                        for (unsigned int d = 0; d < dim; ++d)
-                          values[f].begin()[first + d] =
-                            nodal[next + f * dim + d];
-                      ++n_values;
-                    }
-                  next += n_fields * dim;
-                }
+            const auto  found    = cells.find(ids[i]);
+            const bool  is_known = found != cells.end();
+            const auto *cell     = is_known ? &found->second.first : nullptr;
+            n_values +=
+              read_nodes(vertices[i], cell, space.owned, nodal, next, values);
             if (face)
               n_face_nodes +=
-                of_nodes.read(points.vertices[i],
-                              is_known ? &found->second.first : nullptr,
-                              face_nodes);
+                of_nodes.read(points.vertices[i], cell, face_nodes);
             if (!is_known || !found->second.second)
               continue;
             ++n_cells;
@@ -488,13 +394,13 @@ namespace Viscoplastic
           }
         if (space.axial)
           {
-            require(next + n_fields <= nodal.size());
+            require_sense(next + n_fields <= nodal.size());
             const auto axial = space.owned_axial();
             for (unsigned int f = 0; axial && f < n_fields; ++f)
               values[f].begin()[*axial] = nodal[next + f];
             next += n_fields;
           }
-        require(next == nodal.size() && of_nodes.is_at_end());
+        require_sense(next == nodal.size() && of_nodes.is_at_end());
       }
 
     for (unsigned int f = 0; f < n_fields; ++f)
@@ -509,59 +415,6 @@ namespace Viscoplastic
 
 
 
-  bool
-  CoarseMesh::agrees_with(const CoarseMesh &other) const
-  {
-    if (topology != other.topology || vertices.size() != other.vertices.size())
-      return false;
-    double size = 0., difference = 0.;
-    for (std::size_t i = 0; i < vertices.size(); ++i)
-      {
-        size = std::max(size, std::abs(vertices[i]));
-        difference =
-          std::max(difference, std::abs(vertices[i] - other.vertices[i]));
-      }
-    return difference <= 1e-10 * size;
-  }
-
-
-
-  template <int dim>
-  CoarseMesh
-  describe_coarse_mesh(
-    const parallel::distributed::Triangulation<dim> &triangulation)
-  {
-    // Vertices in the order in which the cells have them first, which does not
-    // depend on how the mesh has been refined.
-    CoarseMesh                            mesh;
-    std::map<unsigned int, std::uint32_t> number;
-    const auto                            add = [&mesh](const std::uint32_t n) {
-      for (unsigned int byte = 0; byte < 4; ++byte)
-        mesh.topology.push_back(n >> (8 * byte) & 0xff);
-    };
-    for (const auto &cell : triangulation.cell_iterators_on_level(0))
-      {
-        add(cell->material_id());
-        for (const unsigned int v : cell->vertex_indices())
-          {
-            const auto [entry, is_new] =
-              number.emplace(cell->vertex_index(v), number.size());
-            add(entry->second);
-            if (is_new)
-              for (unsigned int d = 0; d < dim; ++d)
-                mesh.vertices.push_back(cell->vertex(v)[d]);
-          }
-        for (const unsigned int f : cell->face_indices())
-          add(cell->face(f)->boundary_id());
-      }
-    return mesh;
-  }
-
-
-
-  VISCOPLASTIC_INSTANTIATE(pack_mesh);
-  VISCOPLASTIC_INSTANTIATE(restore_mesh);
   VISCOPLASTIC_INSTANTIATE(pack_fields);
   VISCOPLASTIC_INSTANTIATE(unpack_fields);
-  VISCOPLASTIC_INSTANTIATE(describe_coarse_mesh);
 } // namespace Viscoplastic

@@ -1,0 +1,432 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <viscoplastic_contact/error/error_estimator.h>
+#include <viscoplastic_contact/laws/backward_euler.h>
+
+#include <limits>
+
+// What time steps leave out of z and of history variables, added up.
+
+namespace Viscoplastic
+{
+  namespace
+  {
+    /// How much loads change in a step, relative to those at its end. Friction
+    /// bounds that are given count as loads, and change without limit.
+    /// Collective.
+    template <int dim>
+    double
+    change_of_loads(const FlowLaws<dim>       &laws,
+                    const EvaluatedState<dim> &old,
+                    const EvaluatedState<dim> &end)
+    {
+      const Scene<dim> &scene   = laws.stress_space.space.scene;
+      const auto        changes = [](const auto &datum) {
+        return datum && datum->depends_on_time();
+      };
+      for (const auto &[id, condition] : scene.boundary)
+        if (changes(condition.friction_bound) ||
+            changes(condition.friction_coefficient) ||
+            changes(condition.normal_stress))
+          return std::numeric_limits<double>::infinity();
+      // So does a temperature.
+      if (laws.thermal && laws.thermal->changes(old.state.t, end.state.t))
+        return std::numeric_limits<double>::infinity();
+      DistributedVector change = end.forces.load.values;
+      change -= old.forces.load.values;
+      const double size = change.l2_norm();
+      return size > 0. ? size / end.forces.load.values.l2_norm() : 0.;
+    }
+
+
+
+    /// What becomes of an error of the history variables of @p point in a step
+    /// of backward Euler to this stress, and what it adds to z meanwhile: the
+    /// difference of two steps.
+    struct CarriedError
+    {
+      SymmetricTensor<2, 3> history, z;
+    };
+
+    CarriedError
+    carry_history_error(const ViscoplasticLaw       &law,
+                        const SymmetricTensor<2, 3> &error,
+                        const SymmetricTensor<2, 3> &stress,
+                        const SymmetricTensor<2, 3> &strain,
+                        const double                 k,
+                        const Stiffness             &stiffness,
+                        LawPoint                     point)
+    {
+      CarriedError                result;
+      const SymmetricTensor<2, 3> start = *point.history;
+      for (const double with : {1., -1.})
+        {
+          const SymmetricTensor<2, 3> from = with > 0. ? start + error : start;
+          point.history                    = &from;
+          const SymmetricTensor<2, 3> history =
+            law.history_after_step(stress, strain, k, stiffness, point);
+          point.history = &history;
+          result.history += with * history;
+          result.z += with * k * law.rate(stress, strain, stiffness, point);
+        }
+      return result;
+    }
+
+
+
+    /// (1 + k dG/deps E^-1)^-1, what a step leaves of an error of z that makes
+    /// no stress, since strains make up for it: of linear laws that depend on
+    /// the strain. None of others, whose strain stays.
+    std::optional<SymmetricTensor<4, 3>>
+    fading_with_strain(const ViscoplasticLaw &law,
+                       const double           k,
+                       const Stiffness       &stiffness,
+                       const LawPoint        &point)
+    {
+      if (!law.has_constant_tangents() || law.radial_flow(0., point))
+        return {};
+      const auto tangents = law.tangents({}, {}, stiffness, point);
+      return invert(identity_tensor<3>() +
+                    k * tangents.strain * invert(stiffness.tensor()));
+    }
+
+
+
+    /// G half-way through a step of which stress and strain are linear.
+    template <int dim>
+    IrreversibleStress
+    rate_half_way(const FlowLaws<dim> &laws,
+                  const State<dim>    &old,
+                  const State<dim>    &end)
+    {
+      State<dim> middle;
+      middle.u       = end.u;
+      middle.z       = end.z;
+      middle.history = end.history;
+      // Local values, those of ghosts included.
+      const std::size_t n_values =
+        laws.stress_space.space.relevant.n_elements();
+      for (std::size_t i = 0; i < n_values; ++i)
+        middle.u.begin()[i] = 0.5 * (old.u.begin()[i] + end.u.begin()[i]);
+      for (std::size_t i = 0; i < end.z.size(); ++i)
+        middle.z[i] = 0.5 * (old.z[i] + end.z[i]);
+      for (std::size_t i = 0; i < end.history.size(); ++i)
+        middle.history[i] = 0.5 * (old.history[i] + end.history[i]);
+      return evaluate_flow(laws, middle, end.t - 0.5 * end.k).rate;
+    }
+
+
+    /// The defect of one step, sample by sample, and its norms.
+    template <int dim>
+    class DefectOfStep
+    {
+    public:
+      DefectOfStep(const Scene<dim>          &scene,
+                   const FlowLaws<dim>       &laws,
+                   const TimeDefect          &defect,
+                   const bool                 has_slope,
+                   const EvaluatedState<dim> &old,
+                   const FlowRate            &accepted_rate,
+                   EvaluatedState<dim>       &end)
+        : stress_space(laws.stress_space)
+        , now(laws.at(end.state.t, old.state.history))
+        , defect(defect)
+        , has_slope(has_slope)
+        , is_second(ErrorEstimator<dim>::has_sample_fields(scene)[2])
+        , relaxes(ErrorEstimator<dim>::has_sample_fields(scene)[3])
+        , has_predictor(defect.second != 0.)
+        , is_measured(scene.parameters.step_control.is_on() ||
+                      scene.parameters.error_control.has_tolerance() ||
+                      scene.quantity)
+        , old(old)
+        , accepted(old.state)
+        , accepted_rate(accepted_rate)
+        , end(end)
+        , state(end.state)
+        , k(state.k)
+        , r(std::max(accepted_rate.relaxation_rate, end.rate->relaxation_rate))
+        , of_loads(defect.first < 0. && k * r > resolved ?
+                     change_of_loads(laws, old, end) :
+                     std::numeric_limits<double>::infinity())
+        , fades(std::isfinite(of_loads))
+        , strains(stress_space.n_samples)
+      {
+        // A power of a stress that grows is not linear in a long step.
+        if (defect.first < 0. && !laws.have_constant_tangents())
+          half_way = rate_half_way(laws, accepted, state);
+        if (has_predictor)
+          {
+            unflowed = accepted.z;
+            if (laws.thermal)
+              laws.thermal->follow(accepted.t, state.t, unflowed);
+          }
+      }
+
+      /// Add it to the fields of the end of the step. Collective.
+      void
+      add()
+      {
+        state.time_error = accepted.time_error;
+        if (is_second)
+          state.rate_slope.resize(accepted.rate_slope.size());
+        state.remembered_error = accepted.remembered_error;
+        state.history_error    = accepted.history_error;
+        state.history_slope.resize(accepted.history_slope.size());
+        std::size_t i = 0;
+        for (std::size_t c = 0; c < stress_space.n_cells(); ++c)
+          {
+            enter(c);
+            for (unsigned int s = 0; s < stress_space.n_samples; ++s, ++i)
+              add_at(c, s, i);
+          }
+        Utilities::MPI::sum(sums, stress_space.space.communicator, sums);
+        ErrorEstimate &estimate      = end.errors;
+        estimate.time_indicator      = std::sqrt(sums[of_step]);
+        estimate.time                = std::sqrt(sums[of_all_steps]);
+        estimate.irreversible_norm   = std::sqrt(sums[of_z]);
+        estimate.irreversible_change = std::sqrt(sums[of_change]);
+        const double rate            = std::sqrt(sums[of_rate]);
+        estimate.creep_path          = old.errors.creep_path + k * rate;
+        estimate.creep_time =
+          estimate.creep_path > 0. ? estimate.creep_path / rate : 0.;
+        estimate.remembered_share =
+          sums[of_remembered] > 0. ?
+            std::sqrt(sums[of_kept] / sums[of_remembered]) :
+            1.;
+        estimate.remembered_indicator =
+          relaxes ? std::sqrt(sums[of_left]) : estimate.time_indicator;
+      }
+
+    private:
+      /// Set what all samples of a cell have in common.
+      void
+      enter(const std::size_t c)
+      {
+        const ViscoplasticLaw *last_law       = law;
+        const Stiffness       *last_stiffness = stiffness;
+        law                                   = now.law(c);
+        stiffness                             = &stress_space.moduli(c);
+        // The same in all cells of most bodies.
+        if (c == 0 || law != last_law || stiffness != last_stiffness ||
+            (law && now.varies_in_space(c)))
+          {
+            fading =
+              law ? fading_with_strain(*law, k, *stiffness, now.point(c, 0)) :
+                    std::nullopt;
+            is_uniform =
+              law && law->has_constant_tangents() && !now.varies_in_space(c);
+            if (law == nullptr)
+              relaxation = identity_tensor<3>();
+            else if (is_uniform && (relaxes || fades))
+              relaxation =
+                error_relaxation(*law, {}, {}, k, *stiffness, now.point(c, 0));
+          }
+        remembers = law && law->n_history_variables > 0;
+        needs_stress =
+          law && ((fades && of_loads > 0.) ||
+                  ((relaxes || fades) && !is_uniform) || remembers);
+        if (needs_stress)
+          stress_space.strains(c, state.u.begin(), strains.data());
+      }
+
+      void
+      add_at(const std::size_t c, const unsigned int s, const std::size_t i)
+      {
+        const SymmetricTensor<2, 3> change =
+          end.rate->rate[i] - accepted_rate.rate[i];
+        SymmetricTensor<2, 3> all =
+          defect_of(accepted_rate.rate[i],
+                    end.rate->rate[i],
+                    has_predictor ? state.z[i] - unflowed[i] :
+                                    SymmetricTensor<2, 3>(),
+                    i,
+                    accepted.rate_slope,
+                    state.rate_slope);
+        if (!half_way.empty())
+          all -= k / 3. *
+                 (accepted_rate.rate[i] + end.rate->rate[i] - 2. * half_way[i]);
+        SymmetricTensor<2, 3> step = all;
+        CarriedError          carried;
+        if (needs_stress)
+          {
+            stress = stiffness->stress(strains[s]) + state.z[i];
+            strain = now.mechanical(strains[s], c, s);
+            point  = now.point(c, s);
+          }
+        if (law && (relaxes || fades) && !is_uniform)
+          relaxation =
+            error_relaxation(*law, stress, strain, k, *stiffness, point);
+        if (remembers)
+          carried = carry_history(i);
+        if (fades)
+          {
+            // What the history has changed is no relaxation of stress, nor
+            // what the loads have.
+            const SymmetricTensor<2, 3> of_history =
+              remembers ? change_by_history(i) : SymmetricTensor<2, 3>();
+            const double share = share_of_loads(change);
+            step =
+              share * all +
+              (1. - share) * (of_history + relaxation * (all - of_history));
+          }
+        state.time_error[i] += carried.z + step;
+        if (relaxes)
+          state.remembered_error[i] += carried.z;
+        if (fading)
+          state.time_error[i] = *fading * state.time_error[i];
+        // Steps are chosen with the slope as the change of slope there.
+        if (!has_slope)
+          step += defect.second * k * change;
+        const auto add_square = [&](const Norm                   norm,
+                                    const SymmetricTensor<2, 3> &value) {
+          sums[norm] +=
+            stress_space.weight(c, s) * stiffness->complementary_square(value);
+        };
+        if (relaxes)
+          {
+            SymmetricTensor<2, 3>      &error = state.remembered_error[i];
+            const SymmetricTensor<2, 3> left =
+                                          relaxation * (fades ? all : step),
+                                        relaxed = relaxation * error;
+            add_square(of_left, left);
+            add_square(of_remembered, error);
+            add_square(of_kept, fading ? error : relaxed);
+            error = relaxed + left;
+          }
+        add_square(of_step, step);
+        add_square(of_all_steps, state.time_error[i]);
+        if (is_measured)
+          {
+            add_square(of_z, state.z[i]);
+            add_square(of_change, state.z[i] - accepted.z[i]);
+            add_square(of_rate, end.rate->rate[i]);
+          }
+      }
+
+      /// What the step has left out of z or history at a sample, to leading
+      /// order, whose rates at both ends are given; and the slope of that.
+      SymmetricTensor<2, 3>
+      defect_of(const SymmetricTensor<2, 3> &old_rate,
+                const SymmetricTensor<2, 3> &rate,
+                const SymmetricTensor<2, 3> &increment,
+                const std::size_t            i,
+                const IrreversibleStress    &old_slopes,
+                IrreversibleStress          &slopes) const
+      {
+        const SymmetricTensor<2, 3> change = rate - old_rate;
+        SymmetricTensor<2, 3>       step   = defect.first * k * change;
+        // Heun's method takes the rate of its prediction for that of the end.
+        // At the limit of stability nothing relaxes, and no rate changes.
+        if (has_predictor)
+          step += 0.5 * k * (old_rate + rate) - increment;
+        if (is_second)
+          slopes[i] = change / k;
+        // There is no second derivative before the second step.
+        if (is_second && has_slope)
+          step += defect.second * k * k * k * 2. / (k + accepted.k) *
+                  (slopes[i] - old_slopes[i]);
+        return step;
+      }
+
+      /// Add the defect of history variables to what becomes of their error.
+      CarriedError
+      carry_history(const std::size_t i)
+      {
+        const CarriedError carried = carry_history_error(
+          *law, state.history_error[i], stress, strain, k, *stiffness, point);
+        state.history_error[i] =
+          carried.history + defect_of(accepted_rate.history_rate[i],
+                                      end.rate->history_rate[i],
+                                      state.history[i] - accepted.history[i],
+                                      i,
+                                      accepted.history_slope,
+                                      state.history_slope);
+        return carried;
+      }
+
+      /// The part of the defect that is due to the change of history variables.
+      SymmetricTensor<2, 3>
+      change_by_history(const std::size_t i) const
+      {
+        LawPoint after = point;
+        after.history  = &state.history[i];
+        return defect.first * k *
+               (law->rate(stress, strain, *stiffness, after) -
+                law->rate(stress, strain, *stiffness, point));
+      }
+
+      /// The loads have changed G by no more than r times the change of the
+      /// stress.
+      double
+      share_of_loads(const SymmetricTensor<2, 3> &change) const
+      {
+        if (of_loads == 0.)
+          return 0.;
+        const double most = of_loads * r *
+                            std::sqrt(stiffness->complementary_square(stress)),
+                     size = std::sqrt(stiffness->complementary_square(change));
+        return most < size ? most / size : 1.;
+      }
+
+      // What relaxes by itself does so in a time 1/r, however long the step.
+      static constexpr double resolved = 0.1;
+
+      const StressSpace<dim>              &stress_space;
+      const typename FlowLaws<dim>::AtTime now;
+      const TimeDefect                     defect;
+      const bool has_slope, is_second, relaxes, has_predictor, is_measured;
+      const EvaluatedState<dim> &old;
+      const State<dim>          &accepted;
+      const FlowRate            &accepted_rate;
+      EvaluatedState<dim>       &end;
+      State<dim>                &state;
+      const double               k, r, of_loads;
+      const bool                 fades;
+      IrreversibleStress         half_way, unflowed;
+
+      // Of a cell:
+      const ViscoplasticLaw               *law       = nullptr;
+      const Stiffness                     *stiffness = nullptr;
+      std::optional<SymmetricTensor<4, 3>> fading;
+      SymmetricTensor<4, 3>                relaxation;
+      bool is_uniform = false, remembers = false, needs_stress = false;
+      std::vector<SymmetricTensor<2, 3>> strains;
+      // Of a sample:
+      SymmetricTensor<2, 3> stress, strain;
+      LawPoint              point;
+
+      /// Whose squared norms are added up.
+      enum Norm
+      {
+        of_step,
+        of_all_steps,
+        of_z,
+        of_change,
+        of_left,
+        of_rate,
+        of_remembered,
+        of_kept,
+        n_norms
+      };
+      std::vector<double> sums = std::vector<double>(n_norms, 0.);
+    };
+  } // namespace
+
+
+
+  template <int dim>
+  void
+  ErrorEstimator<dim>::add_defect(const FlowLaws<dim>       &laws,
+                                  const TimeDefect          &defect,
+                                  const bool                 has_slope,
+                                  const EvaluatedState<dim> &old,
+                                  const FlowRate            &accepted_rate,
+                                  EvaluatedState<dim>       &end) const
+  {
+    DefectOfStep<dim>(scene, laws, defect, has_slope, old, accepted_rate, end)
+      .add();
+  }
+
+
+
+  VISCOPLASTIC_INSTANTIATE_MEMBER(ErrorEstimator, add_defect);
+} // namespace Viscoplastic

@@ -1,0 +1,217 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <viscoplastic_contact/time_stepping/time_stepper.h>
+
+// What a step of a TimeStepper is judged by.
+
+namespace Viscoplastic
+{
+  namespace
+  {
+    /// Which part of the work of friction in a step is due to bounds that
+    /// change in it, since the work is that of the bounds at the end.
+    /// Collective.
+    double
+    work_of_changed_bounds(const ContactLayout &face,
+                           const ContactState  &before,
+                           const ContactState  &after)
+    {
+      double work = 0.;
+      for (unsigned int p = 0; p < after.n_points(); ++p)
+        if (!face.points[p].is_obstacle && !after.sticks[p])
+          work +=
+            0.5 * (after.bound[p] - before.bound[p]) * after.slip[p].norm();
+      return std::abs(face.sum(work));
+    }
+
+
+
+    /// Those of a step in which points slip as they did in the one before.
+    template <int dim>
+    SlipDefects
+    slip_defects_of_step(const ContactFace<dim>    &face,
+                         const EvaluatedState<dim> &accepted,
+                         const EvaluatedState<dim> &end)
+    {
+      DistributedVector change = end.forces.u;
+      change -= accepted.forces.u;
+      return slip_defects(face.layout(),
+                          accepted.state.contact,
+                          end.state.contact,
+                          face.slips(change, end.state.contact.foundation_step),
+                          end.state.k,
+                          accepted.state.k);
+    }
+
+
+
+    /// Make errors in the energy norm those of the quantity of interest, whose
+    /// dual solution will have at least the norm @p later_dual_norm once.
+    template <int dim>
+    void
+    make_errors_of_quantity(const Discretization<dim> &discretization,
+                            const EvaluatedState<dim> &accepted,
+                            const EvaluatedState<dim> &end,
+                            const bool                 moves,
+                            const double               later_dual_norm,
+                            StepErrors                &errors)
+    {
+      const QuantityEstimate &quantity = end.errors.quantity,
+                             &before   = accepted.errors.quantity;
+      const bool is_sum = discretization.scene().quantity->is_sum();
+      errors.indicator *=
+        std::max(quantity.dual_norm, is_sum ? 0. : later_dual_norm);
+      if (moves)
+        errors.of_events = quantity.friction_indicator;
+      if (is_sum && discretization.face)
+        errors.of_events +=
+          work_of_changed_bounds(discretization.face->layout(),
+                                 accepted.state.contact,
+                                 end.state.contact);
+      // The body may move on while the quantity hardly changes, as after a
+      // change of the mesh.
+      const double share =
+        errors.size > 0. ? std::min(1., errors.change / errors.size) : 0.;
+      errors.size = std::abs(quantity.value);
+      errors.change =
+        std::max(std::abs(quantity.value - before.value), share * errors.size);
+      errors.before = before.time + before.friction;
+    }
+  } // namespace
+
+
+
+  template <int dim>
+  StepErrors
+  TimeStepper<dim>::assess(const EvaluatedState<dim> &accepted,
+                           const FlowRate            *old_rate,
+                           AcceptedStep<dim>         &step)
+  {
+    EvaluatedState<dim> &end   = step.end;
+    const State<dim>    &state = end.state;
+    if (step.is_unchanged && estimate_is_of_state_alone)
+      end.space_estimate = accepted.space_estimate;
+    else
+      // The step may have gone where the law has no value.
+      as_part_of_step(state.n, state.t, [&] {
+        estimate(end);
+        return 0;
+      });
+    if (error_estimator == nullptr)
+      return {};
+    if (scene.has_viscosity() && !end.rate)
+      {
+        TimerOutput::Scope phase(timer, "rate");
+        end.rate = as_part_of_step(state.n, state.t, [&] {
+          return evaluate_flow(discretization.laws, state, state.t);
+        });
+      }
+    TimerOutput::Scope         phase(timer, "estimate");
+    std::optional<SlipDefects> slip_defects;
+    double                     missed_work = 0.;
+    // Equal at both ends, they may be others in between.
+    const Swing swing = swing_of_data(discretization, accepted, end);
+    if (discretization.face && scene.has_bounds_of_step_before())
+      missed_work = discretization.face->missed_bounds(state).work;
+    // What slip turns by on a new mesh, it does in any step, and what it has
+    // been in the first one says nothing of the second.
+    end.has_slip_rate = accepted.is_solution || accepted.state.k == 0.;
+    const bool is_after_kink =
+      control.has_kink_within(step.time_step.t_old - accepted.state.k,
+                              step.time_step.t_old);
+    if (discretization.slipping_face() != nullptr && accepted.state.k > 0. &&
+        accepted.is_solution && accepted.has_slip_rate && !is_after_kink)
+      slip_defects = slip_defects_of_step(*discretization.face, accepted, end);
+    error_estimator->assess(discretization.laws,
+                            time_defect(step.is_implicit ?
+                                          TimeScheme::backward_euler :
+                                          scene.parameters.time.scheme),
+                            step.report,
+                            slip_defects ? slip_defects->work : 0.,
+                            missed_work,
+                            swing,
+                            is_after_kink,
+                            accepted,
+                            old_rate,
+                            end);
+    if (quantity_estimator)
+      quantity_estimator->assess(solver_of_elasticity().bulk(),
+                                 slip_defects ? &*slip_defects : nullptr,
+                                 accepted,
+                                 end);
+    const ErrorEstimate &estimate = end.errors;
+    StepErrors           errors;
+    errors.change =
+      std::max(state.k * std::sqrt(std::max(0., estimate.velocity_square)),
+               estimate.irreversible_change);
+    // What the iterations leave of both states changes G by up to r times as
+    // much, and is all that there is of a smaller change: no shorter step has
+    // less of it. It is a bound: a change twice as large counts as it is, and
+    // steps do not depend on how far iterations have gone. At the limit of
+    // stability, k r = 2, a body that flows may end a step where it began.
+    const double left = step.report.error + accepted.report.error,
+                 flow = estimate.creep_path - accepted.errors.creep_path;
+    const bool moves  = std::max(errors.change, 0.5 * flow) > left;
+    const bool is_of_quantity =
+      scene.quantity && scene.parameters.error_control.has_tolerance();
+    if (moves)
+      {
+        const double indicator = is_of_quantity ?
+                                   estimate.remembered_indicator :
+                                   estimate.time_indicator;
+        errors.indicator =
+          std::clamp(2. * indicator - step.stiffness() * left, 0., indicator);
+      }
+    errors.size   = scene.parameters.error_control.has_tolerance() ?
+                      estimate.energy_norm :
+                      std::max(estimate.energy_norm, estimate.irreversible_norm);
+    errors.before = accepted.errors.time + accepted.errors.friction;
+    if (is_of_quantity)
+      make_errors_of_quantity(discretization,
+                              accepted,
+                              end,
+                              moves,
+                              control.later_dual_norm(state.t),
+                              errors);
+    else if (moves)
+      errors.of_events = estimate.friction - accepted.errors.friction;
+    errors.indicator += errors.of_events;
+    if (!std::isfinite(errors.indicator + errors.change + errors.size))
+      throw StepFailure(state.n, state.t, "the solution is not finite.");
+    return errors;
+  }
+
+
+
+  template <int dim>
+  void
+  TimeStepper<dim>::estimate(EvaluatedState<dim> &evaluated) const
+  {
+    if (!space_estimator)
+      return;
+    TimerOutput::Scope phase(timer, "estimate");
+    evaluated.space_estimate =
+      space_estimator->estimate(evaluated.state, evaluated.forces);
+  }
+
+
+
+  template <int dim>
+  void
+  TimeStepper<dim>::estimate_quantity(EvaluatedState<dim> &initial)
+  {
+    // There is no work before the first step.
+    if (!quantity_estimator || !initial.is_solution || scene.quantity->is_sum())
+      return;
+    TimerOutput::Scope phase(timer, "estimate");
+    quantity_estimator->assess(solver_of_elasticity().bulk(),
+                               nullptr,
+                               initial,
+                               initial);
+  }
+
+
+
+  VISCOPLASTIC_INSTANTIATE_MEMBER(TimeStepper, assess);
+  VISCOPLASTIC_INSTANTIATE_MEMBER(TimeStepper, estimate);
+  VISCOPLASTIC_INSTANTIATE_MEMBER(TimeStepper, estimate_quantity);
+} // namespace Viscoplastic

@@ -31,6 +31,7 @@ import sys
 import paraview.simple as pv
 
 RESULTS = None
+SERIES = "solution.pvd", "solution.xdmf"
 
 SLIP = (0.835, 0.369, 0.0)
 STICK = (1.0, 1.0, 1.0)
@@ -62,7 +63,7 @@ def find(directory):
     here = os.path.dirname(globals().get("__file__") or "")
     places = [asked] if asked else [RESULTS or ".", here or ".", "."]
     for place in map(os.path.abspath, places):
-        if os.path.exists(os.path.join(place, "solution.pvd")):
+        if any(os.path.exists(os.path.join(place, name)) for name in SERIES):
             return place
     raise SystemExit(
         f"Error: {os.path.abspath(places[0])} holds no solution.pvd, so it is no "
@@ -99,7 +100,10 @@ def read(path, name):
     """A series at its last time, or None where it is missing or empty."""
     if not os.path.exists(path):
         return None
-    reader = pv.PVDReader(registrationName=name, FileName=path)
+    if path.endswith(".xdmf"):
+        reader = pv.XDMFReader(registrationName=name, FileNames=[path])
+    else:
+        reader = pv.PVDReader(registrationName=name, FileName=path)
     reader.UpdatePipeline(last_time(reader))
     if reader.GetDataInformation().GetNumberOfPoints() == 0:
         return None
@@ -108,12 +112,13 @@ def read(path, name):
 
 def named(source, name):
     """The name of a field as it is there, which a unit may follow: `slip [m]'."""
-    names = [source.PointData.GetArray(i).Name for i in range(len(source.PointData))]
+    names = [array.Name for data in (source.PointData, source.CellData) for array in data]
     return next((n for n in names if n.split(" [")[0] == name), name)
 
 
 def largest(source, name):
-    array = source.PointData.GetArray(named(source, name))
+    name = named(source, name)
+    array = source.PointData.GetArray(name) or source.CellData.GetArray(name)
     return array.GetRange(-1)[1] if array else 0.0
 
 
@@ -150,7 +155,9 @@ def show_body(warped, view, flat):
     display.Representation = "Surface With Edges"
     display.EdgeColor = (0.55, 0.55, 0.55)
     field = named(warped, "von_mises")
-    pv.ColorBy(display, ("POINTS", field))
+    # In HDF5 means are data of cells.
+    is_nodal = warped.PointData.GetArray(field) is not None
+    pv.ColorBy(display, ("POINTS" if is_nodal else "CELLS", field))
     lut = pv.GetColorTransferFunction(field)
     lut.ApplyPreset("Viridis (matplotlib)", True)
     lut.RescaleTransferFunction(0.0, largest(warped, "von_mises") or 1.0)
@@ -311,7 +318,8 @@ def look_at_body(view, flat):
 def main():
     options = parse()
     directory = find(options.results)
-    solution = read(os.path.join(directory, "solution.pvd"), "solution")
+    series = [os.path.join(directory, name) for name in SERIES]
+    solution = next(filter(None, (read(path, "solution") for path in series)), None)
     if solution is None:
         raise SystemExit(f"Error: solution.pvd in {directory} contains no cells")
     contact = read(os.path.join(directory, "contact.pvd"), "contact")

@@ -181,6 +181,7 @@ namespace Viscoplastic
              path == "Mesh refinement/Strategy" || path == "Output/Points" ||
              path == "Output/Point fields" || path == "Output/Lines" ||
              path == "Output/Line fields" || path == "Output/Integrals" ||
+             path == "Output/Fields in HDF5" ||
              path == "Error control/Error bar" ||
              path == "Error control/Quantity";
     }

@@ -293,6 +293,13 @@ namespace Viscoplastic
                       "replaces the entry above. Unit: time.",
                       Patterns::Double(0.));
     prm.add_parameter(
+      "Fields in HDF5",
+      in_hdf5,
+      "Write the fields of the body as HDF5, one file an output "
+      "and one a mesh for all ranks together, for "
+      "solution.xdmf; else as VTU, a file a rank with the mesh, "
+      "as fields of faces are in any case.");
+    prm.add_parameter(
       "Reference fields",
       reference_fields,
       "At the end of each phase of time, write the fields in "

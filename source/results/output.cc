@@ -3,6 +3,7 @@
 #include <viscoplastic_contact/base/files.h>
 #include <viscoplastic_contact/base/messages.h>
 #include <viscoplastic_contact/base/number_range.h>
+#include <viscoplastic_contact/discretization/initial_state.h>
 #include <viscoplastic_contact/error/solution_errors.h>
 #include <viscoplastic_contact/error/space_estimator.h>
 #include <viscoplastic_contact/results/boundary_fields.h>
@@ -20,15 +21,6 @@ namespace Viscoplastic
 {
   namespace
   {
-    /// The name of an output without its ending.
-    std::string
-    record_name(const std::string &series, const unsigned int n)
-    {
-      return series + '_' + Utilities::int_to_string(n, 5);
-    }
-
-
-
     /// A series and its times, for ParaView.
     std::string
     pvd_record(const std::string &series, const std::vector<double> &times)
@@ -40,6 +32,24 @@ namespace Viscoplastic
       text << std::setprecision(15);
       DataOutBase::write_pvd_record(text, records);
       return text.str();
+    }
+
+
+
+    /// The same in XDMF. Each time has a file of its own, so that what has been
+    /// written remains; the three readers of ParaView want this pointer.
+    std::string
+    xdmf_record(const std::string &series, const std::size_t n_outputs)
+    {
+      std::string text =
+        "<?xml version=\"1.0\"?>\n<Xdmf Version=\"3.0\" "
+        "xmlns:xi=\"http://www.w3.org/2001/XInclude\">\n<Domain>\n<Grid "
+        "Name=\"body\" GridType=\"Collection\" "
+        "CollectionType=\"Temporal\">\n";
+      for (unsigned int i = 0; i < n_outputs; ++i)
+        text += "<xi:include href=\"" + record_name(series, i) +
+                ".xml\" xpointer=\"element(/1)\"/>\n";
+      return text + "</Grid>\n</Domain>\n</Xdmf>\n";
     }
   } // namespace
 
@@ -92,11 +102,15 @@ namespace Viscoplastic
   Output<dim>::resume(const std::vector<double> &earlier)
   {
     times = earlier;
-    for (const std::string &name : series())
-      {
-        write_pvd(name);
-        remove_others(name, times.size());
-      }
+    fail_together(communicator, [&]() {
+      if (Utilities::MPI::this_mpi_process(communicator) == 0)
+        for (const std::string &name : series())
+          {
+            const auto [file, text] = list(name);
+            replace_file(file, text);
+            remove_others(name, times.size());
+          }
+    });
   }
 
 
@@ -118,22 +132,34 @@ namespace Viscoplastic
 
 
   template <int dim>
+  bool
+  Output<dim>::is_in_hdf5(const std::string &name) const
+  {
+    return scene.parameters.output.in_hdf5 &&
+           (name == "solution" || name == "mesh");
+  }
+
+
+
+  template <int dim>
   std::size_t
   Output<dim>::remove_others(const std::string &name,
                              const std::size_t  n_outputs) const
   {
     if (Utilities::MPI::this_mpi_process(communicator) != 0)
       return 0;
-    namespace fs = std::filesystem;
-    const std::regex piece(name +
-                           "_([0-9]{5,9})[.](pvtu|[0-9]+[.]vtu)([.]part)?");
-    // Earlier parts of a run may have had other ranks, and so other pieces.
-    const auto is_listed = [&](const std::string &record,
-                               const std::string &file) {
-      std::ifstream     list(path + record + ".pvtu");
+    namespace fs             = std::filesystem;
+    const bool       is_hdf5 = is_in_hdf5(name);
+    const std::regex piece(
+      name + "_([0-9]{5,9})[.](pvtu|[0-9]+[.]vtu|xml|h5)([.]part)?");
+    // Earlier parts of a run may have had other ranks, and so other pieces; the
+    // mesh was new at other times.
+    const auto is_listed = [&](const std::string &n, const std::string &file) {
+      std::ifstream list(
+        path + (is_hdf5 ? "solution_" + n + ".xml" : name + '_' + n + ".pvtu"));
       std::stringstream text;
       text << list.rdbuf();
-      return text.str().find('"' + file + '"') != std::string::npos;
+      return text.str().find((is_hdf5 ? '>' : '"') + file) != std::string::npos;
     };
     std::vector<fs::path> others;
     std::error_code       error;
@@ -143,9 +169,10 @@ namespace Viscoplastic
         std::smatch       parts;
         if (!std::regex_match(file, parts, piece))
           continue;
-        const auto n = static_cast<unsigned int>(std::stoul(parts[1]));
-        if (n >= n_outputs ||
-            (parts[2] != "pvtu" && !is_listed(record_name(name, n), file)))
+        const std::string ending = parts[2];
+        if (std::stoul(parts[1]) >= n_outputs ||
+            (ending == "xml" || ending == "h5") != is_hdf5 ||
+            (ending != "pvtu" && ending != "xml" && !is_listed(parts[1], file)))
           others.push_back(entry.path());
       }
     for (const fs::path &file : others)
@@ -161,15 +188,19 @@ namespace Viscoplastic
   {
     const std::vector<std::string> present = series();
     for (const std::string name :
-         {"boundary", "contact", "opposite", "revolved", "solution"})
+         {"boundary", "contact", "mesh", "opposite", "revolved", "solution"})
       {
         const std::size_t n_outputs =
           name == "boundary" ? std::min<std::size_t>(1, times.size()) :
-          std::count(present.begin(), present.end(), name) > 0 ? times.size() :
-                                                                 0;
-        if (std::error_code none;
-            remove_others(name, n_outputs) > 0 && n_outputs == 0)
-          std::filesystem::remove(path + name + ".pvd", none);
+          is_in_hdf5(name) ||
+              std::count(present.begin(), present.end(), name) > 0 ?
+                               times.size() :
+                               0;
+        if (std::error_code none; remove_others(name, n_outputs) > 0)
+          for (const std::string list : {".pvd", ".xdmf"})
+            if (n_outputs == 0 ||
+                (name == "solution" && is_in_hdf5(name) == (list == ".pvd")))
+              std::filesystem::remove(path + name + list, none);
       }
     remove_other_lines(path, scene.output_lines.size());
   }
@@ -225,22 +256,23 @@ namespace Viscoplastic
   void
   Output<dim>::write_in_background()
   {
-    const std::function<void()> write_all = [files = std::move(files)]() {
-      for (const auto &write : files)
-        write();
-    };
-    files.clear();
+    const auto to_write = std::exchange(files, {});
     if (Utilities::MPI::n_mpi_processes(communicator) == 1)
       try
         {
-          writing = std::async(std::launch::async, write_all);
+          writing = std::async(std::launch::async, [to_write]() {
+            for (const auto &write : to_write)
+              write();
+          });
           return;
         }
       catch (const std::system_error &)
         {
           // No further thread is allowed here.
         }
-    fail_together(communicator, write_all);
+    // One at a time: ranks write some of them together.
+    for (const auto &write : to_write)
+      fail_together(communicator, write);
   }
 
 
@@ -257,13 +289,13 @@ namespace Viscoplastic
 
 
   template <int dim>
-  void
-  Output<dim>::write_pvd(const std::string &name) const
+  std::pair<std::string, std::string>
+  Output<dim>::list(const std::string &name) const
   {
-    fail_together(communicator, [&]() {
-      if (Utilities::MPI::this_mpi_process(communicator) == 0)
-        replace_file(path + name + ".pvd", pvd_record(name, times));
-    });
+    return is_in_hdf5(name) ?
+             std::make_pair(path + name + ".xdmf",
+                            xdmf_record(name, times.size())) :
+             std::make_pair(path + name + ".pvd", pvd_record(name, times));
   }
 
 
@@ -290,15 +322,14 @@ namespace Viscoplastic
         record + '.' +
         Utilities::int_to_string(r, Utilities::needed_digits(n_ranks - 1)) +
         ".vtu");
-    const std::string pvd = is_series ? pvd_record(name, times) : "";
+    const auto of_series = is_series ? list(name) : decltype(list(name))();
     data.set_flags(vtk_flags());
     files.push_back([data = std::make_shared<PatchOutput<patch_dim, spacedim>>(
                        std::move(data)),
                      path = path,
-                     name,
                      record,
                      pieces,
-                     pvd,
+                     of_series,
                      rank]() {
       std::ostringstream text;
       data->write_vtu(text);
@@ -308,10 +339,21 @@ namespace Viscoplastic
       std::ostringstream list;
       data->write_pvtu_record(list, pieces);
       replace_file(path + record + ".pvtu", list.str());
-      if (!pvd.empty())
-        replace_file(path + name + ".pvd", pvd);
+      if (const auto &[file, text] = of_series; !file.empty())
+        replace_file(file, text);
     });
 
+    return remark_on_range(record + ".pvtu", data_sets, cut_off);
+  }
+
+
+
+  template <int dim>
+  std::string
+  Output<dim>::remark_on_range(const std::string              &file,
+                               const std::vector<std::string> &data_sets,
+                               const std::set<unsigned int>   &cut_off)
+  {
     // Vectors have a data set for each component.
     std::vector<int> is_cut(data_sets.size() + 1, 0);
     for (const unsigned int i : cut_off)
@@ -321,13 +363,14 @@ namespace Viscoplastic
     for (unsigned int i = 0; i < is_cut.size(); ++i)
       if (const std::string field =
             i < data_sets.size() ? "'" + data_sets[i] + "'" : "the coordinates";
-          is_cut[i] == 1 && cut_fields.insert(name + field).second)
+          is_cut[i] == 1 &&
+          cut_fields.insert(file.substr(0, file.find('_')) + field).second)
         fields.push_back(field);
     if (fields.empty())
       return "";
     std::ostringstream remark;
-    remark << "Warning: '" << path << record << ".pvtu' has "
-           << std::setprecision(2) << std::numeric_limits<float>::max()
+    remark << "Warning: '" << path << file << "' has " << std::setprecision(2)
+           << std::numeric_limits<float>::max()
            << ", the largest number of single precision, where the values of "
            << enumeration(fields)
            << " are larger; choose other units to see them.";
@@ -371,88 +414,70 @@ namespace Viscoplastic
     const StressSpace<dim> &stress_space = laws.stress_space;
     const DoFHandler<dim>  &dof_handler  = stress_space.space.dof_handler;
     const auto             &tria         = dof_handler.get_triangulation();
-    BodyOutput<dim>         data_out;
-    data_out.attach_dof_handler(dof_handler);
-    const std::vector<DataComponentInterpretation::DataComponentInterpretation>
-      is_vector(dim, DataComponentInterpretation::component_is_part_of_vector);
-    DistributedVector difference;
-    data_out.add_data_vector(reported_displacement(scene, state, difference),
-                             std::vector<std::string>(dim, "displacement"),
-                             DataOut<dim>::type_dof_data,
-                             is_vector);
-    data_out.add_data_vector(state.velocity,
-                             std::vector<std::string>(dim, "velocity"),
-                             DataOut<dim>::type_dof_data,
-                             is_vector);
+    DistributedVector       difference;
+    BodyData<dim>           body{stress_space.space,
+                       {},
+                       {{"displacement",
+                                   &reported_displacement(scene, state, difference)},
+                                  {"velocity", &state.velocity}},
+                       {}};
 
     // The same fields on all ranks, also on those without cells.
-    const std::set<RecordedField>  fields = BodyFields<dim>::of_output(scene);
-    const BodyFields<dim>          means(laws, state, fields);
-    const std::vector<std::string> names = BodyFields<dim>::names(fields);
-    std::vector<Vector<double>>    values(names.size(),
-                                       Vector<double>(tria.n_active_cells()));
-    Vector<double>                 subdomain(tria.n_active_cells());
+    const std::set<RecordedField> fields = BodyFields<dim>::of_output(scene);
+    const BodyFields<dim>         means(laws, state, fields);
+    for (std::string &name : BodyFields<dim>::names(fields))
+      body.means.emplace_back(std::move(name),
+                              Vector<double>(tria.n_active_cells()));
+    Vector<double> subdomain(tria.n_active_cells());
     for (std::size_t c = 0; c < stress_space.space.cells.size(); ++c)
       {
         const auto        &cell           = stress_space.space.cells[c];
         const unsigned int i              = cell->active_cell_index();
         subdomain[i]                      = cell->subdomain_id();
         const std::vector<double> of_cell = means.means(c);
-        for (std::size_t j = 0; j < names.size(); ++j)
-          values[j][i] = of_cell[j];
+        for (std::size_t j = 0; j < of_cell.size(); ++j)
+          body.means[j].second[i] = of_cell[j];
+        if (scene.is_present(cell->material_id()))
+          body.cells.push_back(cell);
       }
-    for (std::size_t j = 0; j < names.size(); ++j)
-      data_out.add_data_vector(values[j], names[j]);
-    data_out.add_data_vector(subdomain, "subdomain");
-    const auto square_roots = [](Vector<double> squares) {
+    body.means.emplace_back("subdomain", std::move(subdomain));
+    const auto add_root = [&](const std::string &name, Vector<double> squares) {
       for (double &value : squares)
         value = std::sqrt(value);
-      return squares;
+      body.means.emplace_back(name, std::move(squares));
     };
-    Vector<double> estimator, error, recovery;
     if (squared_estimate != nullptr)
+      add_root("estimator", *squared_estimate);
+    if (scene.exact_solution)
       {
-        estimator = square_roots(*squared_estimate);
-        data_out.add_data_vector(estimator, "estimator");
-      }
-    if (stress_space.space.scene.exact_solution)
-      {
-        error = square_roots(
+        add_root(
+          "error_energy",
           solution_errors(stress_space, state, nullptr).squared_energy_by_cell);
-        recovery = square_roots(squared_recovery_estimate(stress_space, state));
-        data_out.add_data_vector(error, "error_energy");
-        data_out.add_data_vector(recovery, "recovery");
+        add_root("recovery", squared_recovery_estimate(stress_space, state));
       }
-    // Those of the present stage.
-    std::vector<typename DoFHandler<dim>::active_cell_iterator> cells;
-    const auto is_present = [this](const auto &cell) {
-      return scene.is_present(cell->material_id());
-    };
-    std::copy_if(stress_space.space.cells.begin(),
-                 stress_space.space.cells.end(),
-                 std::back_inserter(cells),
-                 is_present);
-    if (scene.has_stages())
-      data_out.set_cell_selection([is_present](const auto &cell) {
-        return cell->is_active() && cell->is_locally_owned() &&
-               is_present(cell);
-      });
-    data_out.build_patches();
-    PatchOutput<dim, dim> body = data_out.take_patches(scene, cells);
+
+    std::string  remark;
+    const double degrees = scene.parameters.output.revolved_angle;
+    const bool   is_hdf5 = is_in_hdf5("solution");
+    if (is_hdf5)
+      remark = write_in_hdf5(body, state.t);
+    if (is_hdf5 && degrees == 0.)
+      return remark;
+    PatchOutput<dim, dim> patches = make_patches(scene, body);
     if constexpr (dim == 2)
-      if (const double degrees = scene.parameters.output.revolved_angle;
-          degrees > 0.)
+      if (degrees > 0.)
         {
           std::vector<std::pair<std::size_t, unsigned int>> edges;
-          for (std::size_t c = 0; c < cells.size(); ++c)
-            for (const unsigned int f : cells[c]->face_indices())
-              if (!is_on_axis(cells[c]->face(f)) &&
-                  (cells[c]->at_boundary(f) ||
-                   !is_present(cells[c]->neighbor(f))))
+          for (std::size_t c = 0; c < body.cells.size(); ++c)
+            for (const unsigned int f : body.cells[c]->face_indices())
+              if (!is_on_axis(body.cells[c]->face(f)) &&
+                  (body.cells[c]->at_boundary(f) ||
+                   !scene.is_present(
+                     body.cells[c]->neighbor(f)->material_id())))
                 edges.emplace_back(c, f);
-          write_vtu("revolved", revolved(body, edges, degrees));
+          write_vtu("revolved", revolved(patches, edges, degrees));
         }
-    return write_vtu("solution", std::move(body));
+    return is_hdf5 ? remark : write_vtu("solution", std::move(patches));
   }
 
 

@@ -3,6 +3,7 @@
 
 #include <deal.II/numerics/data_out.h>
 
+#include <viscoplastic_contact/discretization/admissible_space.h>
 #include <viscoplastic_contact/results/unit_labels.h>
 
 #include <algorithm>
@@ -19,10 +20,52 @@
 
 namespace Viscoplastic
 {
-  /// VTU files have single precision. What is beyond its range, and would be
+  /// The name of an output without its ending.
+  inline std::string
+  record_name(const std::string &series, const unsigned int n)
+  {
+    return series + '_' + Utilities::int_to_string(n, 5);
+  }
+
+
+
+  /// What is written of the body at one time, before it is copied.
+  template <int dim>
+  struct BodyData
+  {
+    using Cell = typename DoFHandler<dim>::active_cell_iterator;
+
+    const AdmissibleSpace<dim> &space;
+    /// Those of the present stage that this rank owns.
+    std::vector<Cell> cells;
+    /// Cartesian fields on `relevant`, with their names.
+    std::vector<std::pair<std::string, const DistributedVector *>> vectors;
+    /// Values by the index of active cells.
+    std::vector<std::pair<std::string, Vector<double>>> means;
+  };
+
+
+
+  /// Files have single precision. What is beyond its range, and would be
   /// infinite there, becomes its largest number: ParaView cannot scale colors
-  /// to infinite values. Returns the data sets where this was needed, by
-  /// their indices, and the number of data sets for the coordinates.
+  /// to infinite values. Returns whether this was needed.
+  inline bool
+  cut_off_infinite(std::vector<float> &values)
+  {
+    bool result = false;
+    for (float &value : values)
+      if (std::isinf(value))
+        {
+          value  = std::copysign(std::numeric_limits<float>::max(), value);
+          result = true;
+        }
+    return result;
+  }
+
+
+
+  /// The same of patches. Returns the data sets by their indices, and the
+  /// number of data sets for the coordinates.
   template <int dim, int spacedim>
   std::set<unsigned int>
   cut_off_infinite(std::vector<DataOutBase::Patch<dim, spacedim>> &patches,
@@ -94,48 +137,62 @@ namespace Viscoplastic
 
 
 
-  /// The body with its fields.
+  /// The body, a patch for each cell in the order of @p body, which a restart
+  /// does not change; with the units of @p scene in the names, where deal.II
+  /// allows none in those of data.
   template <int dim>
-  class BodyOutput : public DataOut<dim>
+  PatchOutput<dim, dim>
+  make_patches(const Scene<dim> &scene, const BodyData<dim> &body)
   {
-  public:
-    /// The patches, one for each owned cell in the order of active cells,
-    /// brought into that of @p cells, which a restart does not change; with
-    /// the units of @p scene in the names, where deal.II allows none in those
-    /// of data.
-    template <class Cell>
-    PatchOutput<dim, dim>
-    take_patches(const Scene<dim> &scene, const std::vector<Cell> &cells)
+    struct : DataOut<dim>
     {
-      PatchOutput<dim, dim> result;
-      result.names   = this->get_dataset_names();
-      result.vectors = this->get_nonscalar_data_ranges();
-      for (std::string &name : result.names)
-        name += label_of_field(scene, name);
-      for (VectorRange &range : result.vectors)
-        std::get<2>(range) += label_of_field(scene, std::get<2>(range));
+      using DataOut<dim>::patches, DataOut<dim>::get_dataset_names,
+        DataOut<dim>::get_nonscalar_data_ranges;
+    } data_out;
+    data_out.attach_dof_handler(body.space.dof_handler);
+    for (const auto &[name, field] : body.vectors)
+      data_out.add_data_vector(
+        *field,
+        std::vector<std::string>(dim, name),
+        DataOut<dim>::type_dof_data,
+        std::vector(dim,
+                    DataComponentInterpretation::component_is_part_of_vector));
+    for (const auto &[name, means] : body.means)
+      data_out.add_data_vector(means, name);
+    if (scene.has_stages())
+      data_out.set_cell_selection([&scene](const auto &cell) {
+        return cell->is_active() && cell->is_locally_owned() &&
+               scene.is_present(cell->material_id());
+      });
+    data_out.build_patches();
 
-      std::vector<std::pair<unsigned int, std::size_t>> order;
-      for (const Cell &cell : cells)
-        order.emplace_back(cell->active_cell_index(), order.size());
-      AssertDimension(this->patches.size(), order.size());
-      std::sort(order.begin(), order.end());
-      result.patches.resize(order.size());
-      for (std::size_t p = 0; p < order.size(); ++p)
-        {
-          auto &patch       = result.patches[order[p].second];
-          patch             = std::move(this->patches[p]);
-          patch.patch_index = order[p].second;
-          // Their numbers are no longer right, and nothing here asks for
-          // them.
-          std::fill(std::begin(patch.neighbors),
-                    std::end(patch.neighbors),
-                    numbers::invalid_unsigned_int);
-        }
-      this->patches.clear();
-      return result;
-    }
-  };
+    PatchOutput<dim, dim> result;
+    result.names   = data_out.get_dataset_names();
+    result.vectors = data_out.get_nonscalar_data_ranges();
+    for (std::string &name : result.names)
+      name += label_of_field(scene, name);
+    for (VectorRange &range : result.vectors)
+      std::get<2>(range) += label_of_field(scene, std::get<2>(range));
+
+    // DataOut's are in the order of active cells.
+    std::vector<std::pair<unsigned int, std::size_t>> order;
+    for (const auto &cell : body.cells)
+      order.emplace_back(cell->active_cell_index(), order.size());
+    AssertDimension(data_out.patches.size(), order.size());
+    std::sort(order.begin(), order.end());
+    result.patches.resize(order.size());
+    for (std::size_t p = 0; p < order.size(); ++p)
+      {
+        auto &patch       = result.patches[order[p].second];
+        patch             = std::move(data_out.patches[p]);
+        patch.patch_index = order[p].second;
+        // Their numbers are no longer right, and nothing here asks for them.
+        std::fill(std::begin(patch.neighbors),
+                  std::end(patch.neighbors),
+                  numbers::invalid_unsigned_int);
+      }
+    return result;
+  }
 
 
 

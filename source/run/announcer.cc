@@ -5,44 +5,12 @@
 #include <viscoplastic_contact/mesh/mesh_size.h>
 #include <viscoplastic_contact/run/announcer.h>
 
-#include <cmath>
 #include <iomanip>
 #include <sstream>
 #include <thread>
 
 namespace Viscoplastic
 {
-  namespace
-  {
-    /// The seconds of @p n_steps steps on @p n_ranks cores: those of one rank
-    /// shared out, and what the ranks tell each other (doc/cluster.md).
-    double
-    expected_seconds(SolverDemand       demand,
-                     const double       n_steps,
-                     const unsigned int n_ranks)
-    {
-      // Counted by benchmarks/counts.py: linear iterations of a step, messages
-      // and reductions of one; seconds of a message and of a stage of a
-      // reduction.
-      constexpr double n_iterations = 17., n_messages = 50., n_reductions = 34.,
-                       latency    = 1e-6;
-      demand.n_ranks              = n_ranks;
-      const BulkSolverKind kind   = choose_bulk_solver(demand);
-      const SolverCost     cost   = expected_cost(kind, demand);
-      const double         meshes = std::max(1.,
-                                     n_steps * demand.solves_per_step /
-                                       std::max(demand.n_solves, 1u));
-      const double         talk   = n_ranks == 1 ?
-                                      0. :
-                                      n_iterations * latency *
-                              (n_messages + n_reductions * std::log2(n_ranks));
-      return (meshes * cost.set_up + n_steps * cost.step) / n_ranks +
-             n_steps * talk;
-    }
-  } // namespace
-
-
-
   template <int dim>
   void
   Announcer<dim>::announce(const Scene<dim> &scene)
@@ -158,29 +126,17 @@ namespace Viscoplastic
       }
     if (demand.choice == LinearSolver::direct)
       demand.choice = LinearSolver::automatic;
-    const double present = expected_seconds(demand, n_steps, n_ranks);
     // Where more gain little they cost more than they are worth.
-    unsigned int           best    = 1;
-    double                 of_best = expected_seconds(demand, n_steps, 1);
-    double                 least   = of_best;
-    unsigned int           n_least = 1;
-    constexpr unsigned int n_most  = 4096;
-    const unsigned int     n_cores =
-      std::max(n_ranks, std::thread::hardware_concurrency());
-    for (unsigned int n = 2; n <= n_most; n *= 2)
-      {
-        const double seconds = expected_seconds(demand, n_steps, n);
-        if (n <= n_cores && seconds < 0.75 * of_best)
-          {
-            best    = n;
-            of_best = seconds;
-          }
-        if (seconds < least)
-          {
-            least   = seconds;
-            n_least = n;
-          }
-      }
+    constexpr double   worth  = 0.4;
+    const unsigned int n_most = 4096;
+    const unsigned int best =
+      best_ranks(demand,
+                 n_steps,
+                 std::max(n_ranks, std::thread::hardware_concurrency()),
+                 worth);
+    const unsigned int n_least = best_ranks(demand, n_steps, n_most);
+    const double       present = expected_seconds(demand, n_steps, n_ranks),
+                 of_best       = expected_seconds(demand, n_steps, best);
     constexpr double short_run = 20.;
     if (std::max(present, of_best) < short_run || of_best > 0.75 * present)
       return;

@@ -79,6 +79,11 @@ namespace Viscoplastic
     const parallel::distributed::Triangulation<dim> &triangulation)
   {
     const OutputParameters &asked = scene.parameters.output;
+#ifndef DEAL_II_WITH_HDF5
+    AssertThrow(!asked.in_hdf5,
+                ExcMessage("'Output/Fields in HDF5' needs a deal.II with HDF5, "
+                           "which this one has not."));
+#endif
     check_points(triangulation, scene.output_points, "Output/Points");
     check_fields_at(scene,
                     triangulation,

@@ -3,6 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
 namespace
 {
   using namespace Viscoplastic;
@@ -130,5 +134,66 @@ namespace
     const SolverDemand large = demand(3, 1000000, 30, 500);
     EXPECT_GT(expected_memory(Kind::direct, large),
               4. * expected_memory(Kind::geometric_multigrid, large));
+  }
+
+
+
+  /// Kept meshes of a body with levels, on which a step has a solve.
+  SolverDemand
+  steady(const unsigned int dim, const unsigned int n_dofs)
+  {
+    return demand(dim, n_dofs, 100, n_dofs / 200);
+  }
+
+
+
+  TEST(SolverChoice, RanksShareTheWorkAndTalk)
+  {
+    // (2.3 + 0.001 + 100 (0.37 + 0.0025)) / 4 + 100 17e-6 (50 + 34 log2(4))
+    EXPECT_NEAR(expected_seconds(steady(3, 110000), 100., 4), 10.08835, 1e-10);
+    EXPECT_NEAR(expected_seconds(steady(3, 110000), 100., 1), 39.551, 1e-10);
+    // A new mesh every fifth step: 20 of them.
+    SolverDemand often    = steady(3, 110000);
+    often.n_solves        = 10;
+    often.solves_per_step = 2;
+    EXPECT_NEAR(expected_seconds(often, 100., 1), 37.25 + 20 * 2.301, 1e-10);
+  }
+
+
+
+  TEST(SolverChoice, MoreWorkWantsMoreRanks)
+  {
+    for (const unsigned int dim : {2, 3})
+      {
+        unsigned int before = 1;
+        for (unsigned int n_dofs = 1000; n_dofs < 100000000; n_dofs *= 3)
+          {
+            const SolverDemand  of_scene = steady(dim, n_dofs);
+            std::vector<double> seconds;
+            for (unsigned int n = 1; n <= 4096; n *= 2)
+              seconds.push_back(expected_seconds(of_scene, 100., n));
+            const auto least = std::min_element(seconds.begin(), seconds.end());
+            const unsigned int best = best_ranks(of_scene, 100., 4096);
+            EXPECT_EQ(best, 1u << (least - seconds.begin())) << n_dofs;
+            // Falls to the least, rises behind it: from two ranks on, which
+            // all have multigrid.
+            for (auto s = seconds.begin() + 2; s != seconds.end(); ++s)
+              EXPECT_EQ(*s < *(s - 1), s <= least) << n_dofs;
+            EXPECT_GE(best, before) << n_dofs;
+            before = best;
+
+            // No more than there are; no more than are worth it.
+            EXPECT_EQ(best_ranks(of_scene, 100., 3),
+                      seconds[1] < seconds[0] ? 2 : 1);
+            const unsigned int worth = best_ranks(of_scene, 100., 4096, 0.4);
+            EXPECT_LE(worth, best);
+            for (unsigned int i = 0, n = 1; n < worth; n *= 2, ++i)
+              EXPECT_GT(seconds[i] * std::pow(n, 0.4),
+                        expected_seconds(of_scene, 100., worth) *
+                          std::pow(worth, 0.4));
+          }
+        EXPECT_EQ(before, 4096);
+        EXPECT_EQ(best_ranks(steady(dim, 100), 100., 4096), 1);
+      }
   }
 } // namespace

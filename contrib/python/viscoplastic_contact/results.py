@@ -4,6 +4,7 @@
 import csv
 import json
 import re
+import sys
 import xml.etree.ElementTree as ElementTree
 from functools import cached_property
 from pathlib import Path
@@ -27,6 +28,10 @@ class Record:
 
     def __init__(self, path, rest=0.0):
         self.rest = rest
+        self.path = path
+        if path.suffix == ".xml":
+            self.points, self.cells, self.data = read_hdf5(path)
+            return
         # Not needed by who reads numbers alone, and slow to start.
         import meshio
 
@@ -53,7 +58,6 @@ class Record:
             raise UserError(f"{path} contains no cells")
         if len({block.shape[1] for block in cells}) > 1:
             raise UserError(f"{path} mixes cells of different shapes")
-        self.path = path
         self.points = np.concatenate(points)
         self.cells = np.concatenate(cells)
         if any(piece.keys() != data[0].keys() for piece in data):
@@ -97,6 +101,37 @@ def pieces(path):
     return [path.parent / source for source in sources]
 
 
+def read_hdf5(path):
+    """Points, cells and data as Record has them, of one time of solution.xdmf."""
+    try:
+        import h5py
+    except ModuleNotFoundError as error:
+        raise UserError(
+            f"{path} is in HDF5, and {sys.executable} has no h5py (Debian: "
+            "python3-h5py); without 'Output/Fields in HDF5' none is needed"
+        ) from error
+
+    def values(element):
+        file, name = element.find("DataItem").text.split(":")
+        with h5py.File(path.parent / file, "r") as data:
+            return data[name][()]
+
+    grid = parse_xml(path)
+    try:
+        cells, nodes = values(grid.find("Topology")), values(grid.find("Geometry"))
+        data = {}
+        for field in grid.iter("Attribute"):
+            is_nodal, found = field.get("Center") == "Node", values(field)
+            data[without_unit(field.get("Name"))] = (
+                found[cells.ravel()] if is_nodal else found.repeat(cells.shape[1])
+            )
+    except (AttributeError, IndexError, KeyError, OSError, ValueError) as error:
+        raise UserError(f"{path} cannot be read: {error!r}") from error
+    points = np.zeros((cells.size, 3))
+    points[:, : nodes.shape[1]] = nodes[cells.ravel()]
+    return points, np.arange(cells.size).reshape(cells.shape), data
+
+
 def is_empty(vtu):
     """Whether a rank had nothing to write; meshio stumbles over such files."""
     with open(vtu, "rb") as file:
@@ -105,13 +140,17 @@ def is_empty(vtu):
 
 
 def series(path):
-    """The (time, file) pairs of a .pvd file."""
+    """The (time, file) pairs of a .pvd file, or of a .xdmf file."""
+    root = parse_xml(path)
     try:
         found = [
             (float(item.attrib["timestep"]), path.parent / item.attrib["file"])
-            for item in parse_xml(path).iter("DataSet")
+            for item in root.iter("DataSet")
         ]
-    except (KeyError, ValueError) as error:
+        for item in root.iter("{http://www.w3.org/2001/XInclude}include"):
+            file = path.parent / item.attrib["href"]
+            found.append((float(parse_xml(file).find("Time").attrib["Value"]), file))
+    except (AttributeError, KeyError, ValueError) as error:
         raise UserError(
             f"{path} is damaged: an entry lacks its time or its file"
         ) from error
@@ -124,7 +163,7 @@ def series(path):
 
 def number(path):
     """The number in solution_00012.pvtu."""
-    match = re.search(r"_(\d+)\.p?vtu$", path.name)
+    match = re.search(r"_(\d+)\.(p?vtu|xml)$", path.name)
     return int(match.group(1)) if match else None
 
 
@@ -208,7 +247,8 @@ class Results:
         self.name = self.directory.name
         if not self.directory.is_dir():
             raise UserError(f"there is no directory {directory}")
-        solution = self.directory / "solution.pvd"
+        in_hdf5 = self.parameters.get(("Output", "Fields in HDF5")) == "true"
+        solution = self.directory / f"solution.{'xdmf' if in_hdf5 else 'pvd'}"
         self.statistics = read_statistics(self.directory / "statistics.csv")
         if not solution.exists() and not self.statistics:
             raise UserError(

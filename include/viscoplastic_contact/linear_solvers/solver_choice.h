@@ -70,6 +70,24 @@ namespace Viscoplastic
   expected_cost(const BulkSolverKind kind, const SolverDemand &demand);
 
 
+  /// The expected seconds of @p n_steps steps on @p n_ranks cores: those of one
+  /// rank shared out, and what the ranks tell each other (doc/cluster.md).
+  double
+  expected_seconds(SolverDemand       demand,
+                   const double       n_steps,
+                   const unsigned int n_ranks);
+
+
+  /// The power of two, at most @p n_most, with the least product of these
+  /// seconds and the number of ranks to the power @p worth: a number is not
+  /// taken for another one if it saves less than 1 - 2^-worth a doubling.
+  unsigned int
+  best_ranks(const SolverDemand &demand,
+             const double        n_steps,
+             const unsigned int  n_most,
+             const double        worth = 0.);
+
+
   /// Memory in bytes that matrix, solver and vectors take beyond mesh and
   /// spaces: fitted to measurements (doc/solvers.md), good to a factor of 1.5
   /// or so.

@@ -277,9 +277,9 @@ namespace Viscoplastic
   {
     std::string               directory;
     unsigned int              fields_every     = 1;
-    bool                      reference_fields = false;
-    double                    fields_interval  = 0.;
-    double                    revolved_angle   = 0.;
+    bool                      reference_fields = false, in_hdf5 = false;
+    double                    fields_interval = 0.;
+    double                    revolved_angle  = 0.;
     std::string               points, lines, integrals;
     bool                      lines_every_step = false;
     std::set<RecordedField>   point_fields, line_fields;

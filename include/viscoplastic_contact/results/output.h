@@ -8,6 +8,7 @@
 
 #include <functional>
 #include <future>
+#include <memory>
 #include <optional>
 #include <set>
 #include <string>
@@ -18,11 +19,14 @@ namespace Viscoplastic
 {
   template <int patch_dim, int dim>
   class PatchOutput;
+  template <int dim>
+  struct BodyData;
+  struct DataSet;
 
   /// Results in one directory: fields of the body (solution.pvd; revolved.pvd
   /// of one of revolution) and of Gamma_3 (contact.pvd; opposite.pvd on other
-  /// bodies) as VTU series, and what is needed to reproduce the run
-  /// (parameters.prm, run.json).
+  /// bodies) as VTU series, the body also as HDF5 (solution.xdmf), and what is
+  /// needed to reproduce the run (parameters.prm, run.json).
   template <int dim>
   class Output
   {
@@ -109,12 +113,26 @@ namespace Viscoplastic
     write_vtu(const std::string               &name,
               PatchOutput<patch_dim, spacedim> data,
               const bool                       is_series = true);
+    /// As write_vtu(), of the body.
+    std::string
+    write_in_hdf5(const BodyData<dim> &body, const double t);
+    /// A sentence about data sets of a file whose values have been cut off for
+    /// the first time: their indices, the number of data sets for the
+    /// coordinates. Collective.
+    std::string
+    remark_on_range(const std::string              &file,
+                    const std::vector<std::string> &data_sets,
+                    const std::set<unsigned int>   &cut_off);
     /// Begin to write what is in `files`; with several ranks, which leave no
     /// processor idle, write it.
     void
     write_in_background();
-    void
-    write_pvd(const std::string &name) const;
+    /// The file that lists the outputs of a series, and its text.
+    std::pair<std::string, std::string>
+    list(const std::string &name) const;
+    /// Whether these files are in HDF5.
+    bool
+    is_in_hdf5(const std::string &name) const;
     std::vector<std::string>
     series() const;
     /// Remove pieces of outputs that do not count, on rank 0: those behind the
@@ -129,6 +147,9 @@ namespace Viscoplastic
     const MPI_Comm      communicator;
     std::string         path; // ends with a slash
     std::vector<double> times;
+    /// The mesh of the last output in HDF5, and the file that has it.
+    std::shared_ptr<const std::vector<DataSet>> mesh;
+    std::string                                 mesh_file;
     /// What writes the files of the output at the last of these times.
     std::vector<std::function<void()>> files;
     /// Done when they are written; its destructor waits for that.

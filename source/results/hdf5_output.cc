@@ -1,0 +1,348 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "vtu_output.h"
+#include <viscoplastic_contact/base/files.h>
+#include <viscoplastic_contact/base/messages.h>
+#include <viscoplastic_contact/results/output.h>
+
+#include <filesystem>
+#include <iomanip>
+#include <numeric>
+#include <sstream>
+#include <variant>
+
+#ifdef DEAL_II_WITH_HDF5
+#  include <hdf5.h>
+#endif
+
+// The body as files of HDF5, which ranks write together, with a description in
+// XDMF: a value of vectors at each node, of means in each cell. Not by deal.II's
+// write_hdf5_parallel(): a thread may not call MPI, and it writes doubles and
+// tells of a full disk in debug builds alone.
+
+namespace Viscoplastic
+{
+  /// The rows of a table on this rank, from the given one of all ranks' on.
+  struct DataSet
+  {
+    std::string   name;
+    std::uint64_t n_columns, first_row, n_rows;
+    std::variant<std::vector<float>, std::vector<types::global_dof_index>>
+      values;
+
+    bool
+    operator==(const DataSet &other) const
+    {
+      return first_row == other.first_row && n_rows == other.n_rows &&
+             values == other.values;
+    }
+  };
+
+
+
+  namespace
+  {
+    /// Coordinates of nodes and, in the order of ParaView, nodes of cells.
+    /// Collective.
+    template <int dim>
+    std::vector<DataSet>
+    mesh_of(const BodyData<dim> &body)
+    {
+      const MPI_Comm         communicator = body.space.communicator;
+      const DoFHandler<dim> &dof_handler  = body.space.dof_handler;
+      const IndexSet        &owned        = dof_handler.locally_owned_dofs();
+      const auto             n_cells =
+        Utilities::MPI::all_gather(communicator, body.cells.size());
+      const auto own =
+        n_cells.begin() + Utilities::MPI::this_mpi_process(communicator);
+      std::vector<float>                   coordinates(owned.n_elements());
+      std::vector<types::global_dof_index> nodes;
+      for (const auto &cell : body.space.cells)
+        for (const unsigned int v : cell->vertex_indices())
+          for (unsigned int d = 0; d < dim; ++d)
+            if (const auto dof = cell->vertex_dof_index(v, d);
+                owned.is_element(dof))
+              coordinates[owned.index_within_set(dof)] = cell->vertex(v)[d];
+      for (const auto &cell : body.cells)
+        for (const unsigned int v : {0, 1, 3, 2, 4, 5, 7, 6})
+          if (v < cell->n_vertices())
+            nodes.push_back(cell->vertex_dof_index(v, 0) / dim);
+      return {
+        {"nodes",
+         dim,
+         owned.is_empty() ? 0 : *owned.begin() / dim,
+         dof_handler.n_dofs() / dim,
+         std::move(coordinates)},
+        {"cells",
+         GeometryInfo<dim>::vertices_per_cell,
+         std::accumulate(n_cells.begin(), own, std::uint64_t(0)),
+         std::accumulate(n_cells.begin(), n_cells.end(), std::uint64_t(0)),
+         std::move(nodes)}};
+    }
+
+
+
+    /// Vectors, with three components, and means.
+    template <int dim>
+    std::vector<DataSet>
+    fields_of(const BodyData<dim> &body, const std::vector<DataSet> &mesh)
+    {
+      const AdmissibleSpace<dim> &space = body.space;
+      std::vector<DataSet>        result;
+      const auto add = [&](const std::string &name, const bool is_vector) {
+        const DataSet &rows = mesh[is_vector ? 0 : 1];
+        result.push_back({name,
+                          is_vector ? 3u : 1u,
+                          rows.first_row,
+                          rows.n_rows,
+                          std::vector<float>()});
+        return &std::get<0>(result.back().values);
+      };
+      for (const auto &[name, field] : body.vectors)
+        {
+          std::vector<float> *const values = add(name, true);
+          for (const auto dof : space.dof_handler.locally_owned_dofs())
+            {
+              values->push_back(
+                field->begin()[space.relevant.index_within_set(dof)]);
+              if (dim == 2 && dof % dim == 1)
+                values->push_back(0.f);
+            }
+        }
+      for (const auto &[name, means] : body.means)
+        {
+          std::vector<float> *const values = add(name, false);
+          for (const auto &cell : body.cells)
+            values->push_back(means[cell->active_cell_index()]);
+        }
+      return result;
+    }
+
+
+
+#ifdef DEAL_II_WITH_HDF5
+    /// An object of the library, closed at the end.
+    struct Handle
+    {
+      const hid_t id;
+      herr_t (*const close)(hid_t);
+
+      ~Handle()
+      {
+        if (id >= 0)
+          close(id);
+      }
+
+      operator hid_t() const
+      {
+        return id;
+      }
+    };
+
+
+
+    bool
+    write(const hid_t file, const DataSet &set, const hid_t transfer)
+    {
+      const int     n_dims    = set.n_columns == 1 ? 1 : 2;
+      const hsize_t all[2]    = {set.n_rows, set.n_columns},
+                    first[2]  = {set.first_row, 0};
+      const auto write_values = [&](const auto &values) {
+        using Number       = std::decay_t<decltype(values[0])>;
+        const hid_t   type = std::is_same_v<Number, float> ? H5T_NATIVE_FLOAT :
+                             sizeof(Number) == 4           ? H5T_NATIVE_UINT32 :
+                                                             H5T_NATIVE_UINT64;
+        const hsize_t own[2]   = {values.size() / set.n_columns, set.n_columns};
+        const Handle  creation = {H5Pcreate(H5P_DATASET_CREATE), H5Pclose},
+                     memory    = {H5Screate_simple(n_dims, own, nullptr),
+                                  H5Sclose},
+                     space = {H5Screate_simple(n_dims, all, nullptr), H5Sclose};
+        // Equal data make equal files.
+        H5Pset_obj_track_times(creation, false);
+        const Handle data = {H5Dcreate2(file,
+                                        set.name.c_str(),
+                                        type,
+                                        space,
+                                        H5P_DEFAULT,
+                                        creation,
+                                        H5P_DEFAULT),
+                             H5Dclose};
+        H5Sselect_hyperslab(
+          space, H5S_SELECT_SET, first, nullptr, own, nullptr);
+        if (own[0] == 0)
+          H5Sselect_none(space);
+        return H5Dwrite(data, type, memory, space, transfer, values.data()) >=
+               0;
+      };
+      return std::visit(write_values, set.values);
+    }
+
+
+
+    /// Write a file: @p ranks together, or this one alone, without MPI, so that
+    /// a thread can do it. Throws ExcMessage, on all ranks.
+    void
+    write_hdf5(const std::string             &file,
+               const std::vector<DataSet>    &data_sets,
+               const std::optional<MPI_Comm> &ranks)
+    {
+      H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
+      const std::string part   = file + ".part";
+      const Handle      access = {H5Pcreate(H5P_FILE_ACCESS), H5Pclose},
+                   transfer    = {H5Pcreate(H5P_DATASET_XFER), H5Pclose};
+      if (ranks)
+        {
+          fail_together(*ranks, [&]() { require_writable_file(file); });
+          H5Pset_fapl_mpio(access, *ranks, MPI_INFO_NULL);
+          H5Pset_dxpl_mpio(transfer, H5FD_MPIO_COLLECTIVE);
+        }
+      else // in memory
+        H5Pset_fapl_core(access, 1 << 16, false);
+      std::string bytes;
+      bool        good = true;
+      {
+        const Handle written = {
+          H5Fcreate(part.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access),
+          H5Fclose};
+        // Ranks do the same, whatever goes wrong.
+        for (const DataSet &set : data_sets)
+          good = write(written, set, transfer) && good;
+        good = H5Fflush(written, H5F_SCOPE_GLOBAL) >= 0 && good;
+        if (!ranks && good)
+          {
+            bytes.resize(H5Fget_file_image(written, nullptr, 0));
+            H5Fget_file_image(written, bytes.data(), bytes.size());
+          }
+      }
+      const auto check = [&]() {
+        AssertThrow(good, ExcMessage("HDF5 cannot write '" + file + "'."));
+      };
+      if (!ranks)
+        {
+          check();
+          replace_file(file, bytes);
+          return;
+        }
+      fail_together(*ranks, check);
+      fail_together(*ranks, [&]() {
+        if (Utilities::MPI::this_mpi_process(*ranks) == 0)
+          std::filesystem::rename(part, file);
+      });
+    }
+#else
+    void
+    H5open()
+    {}
+
+    void
+    write_hdf5(const std::string &,
+               const std::vector<DataSet> &,
+               const std::optional<MPI_Comm> &)
+    {
+      Assert(false, ExcInternalError()); // check_output_places() has refused it
+    }
+#endif
+
+
+
+    /// An element of XDMF with the numbers of a data set in a file.
+    std::string
+    element(const std::string &name,
+            const std::string &attributes,
+            const std::string &file,
+            const DataSet     &set)
+    {
+      const bool is_real = set.values.index() == 0;
+      return '<' + name + ' ' + attributes +
+             "><DataItem Format=\"HDF\" NumberType=\"" +
+             (is_real ? "Float" : "UInt") + "\" Precision=\"" +
+             std::to_string(is_real ? sizeof(float) :
+                                      sizeof(types::global_dof_index)) +
+             "\" Dimensions=\"" + std::to_string(set.n_rows) +
+             (set.n_columns > 1 ? ' ' + std::to_string(set.n_columns) : "") +
+             "\">" + file + ":/" + set.name + "</DataItem></" + name + ">\n";
+    }
+  } // namespace
+
+
+
+  template <int dim>
+  std::string
+  Output<dim>::write_in_hdf5(const BodyData<dim> &body, const double t)
+  {
+    using DataSets = std::vector<DataSet>;
+    // Not by the thread that writes: HDF5 registers with MPI.
+    H5open();
+    const auto mesh_now = std::make_shared<DataSets>(mesh_of(body));
+    const auto fields = std::make_shared<DataSets>(fields_of(body, *mesh_now));
+    std::set<unsigned int> cut_off;
+    for (unsigned int i = 0; i <= fields->size(); ++i)
+      if (cut_off_infinite(std::get<0>(
+            (i < fields->size() ? (*fields)[i] : (*mesh_now)[0]).values)))
+        cut_off.insert(i);
+
+    const std::string record = record_name("solution", times.size() - 1);
+    const bool        is_new =
+      Utilities::MPI::max(mesh == nullptr || *mesh != *mesh_now ? 1 : 0,
+                          communicator) == 1;
+    if (is_new)
+      {
+        mesh      = mesh_now;
+        mesh_file = record_name("mesh", times.size() - 1) + ".h5";
+      }
+    std::ostringstream grid;
+    grid << std::setprecision(15)
+         << "<Grid Name=\"body\" GridType=\"Uniform\">\n<Time Value=\"" << t
+         << "\"/>\n"
+         << element("Topology",
+                    (dim == 2 ? "TopologyType=\"Quadrilateral\"" :
+                                "TopologyType=\"Hexahedron\"") +
+                      (" NumberOfElements=\"" +
+                       std::to_string((*mesh)[1].n_rows) + '"'),
+                    mesh_file,
+                    (*mesh)[1])
+         << element("Geometry",
+                    dim == 2 ? "GeometryType=\"XY\"" : "GeometryType=\"XYZ\"",
+                    mesh_file,
+                    (*mesh)[0]);
+    std::vector<std::string> names;
+    for (const DataSet &field : *fields)
+      {
+        names.push_back(field.name + label_of_field(scene, field.name));
+        grid << element("Attribute",
+                        "Name=\"" + names.back() +
+                          (field.n_columns == 3 ?
+                             "\" AttributeType=\"Vector\" Center=\"Node\"" :
+                             "\" AttributeType=\"Scalar\" Center=\"Cell\""),
+                        record + ".h5",
+                        field);
+      }
+    grid << "</Grid>\n";
+
+    std::optional<MPI_Comm> ranks;
+    if (Utilities::MPI::n_mpi_processes(communicator) > 1)
+      ranks = communicator;
+    files.push_back(
+      [fields,
+       ranks,
+
+       name        = path + record,
+       new_mesh    = is_new ? mesh : nullptr,
+       mesh_file   = path + mesh_file,
+       grid        = grid.str(),
+       of_series   = list("solution"),
+       has_records = Utilities::MPI::this_mpi_process(communicator) == 0]() {
+        if (new_mesh)
+          write_hdf5(mesh_file, *new_mesh, ranks);
+        write_hdf5(name + ".h5", *fields, ranks);
+        if (!has_records)
+          return;
+        replace_file(name + ".xml", grid);
+        replace_file(of_series.first, of_series.second);
+      });
+    return remark_on_range(record + ".h5", names, cut_off);
+  }
+
+
+
+  VISCOPLASTIC_INSTANTIATE_MEMBER(Output, write_in_hdf5);
+} // namespace Viscoplastic

@@ -290,14 +290,16 @@ namespace Viscoplastic
 
 
   template <int dim>
-  void
+  bool
   share_mismatch(const StressSpace<dim>   &stress_space,
                  const IrreversibleStress &stress,
+                 const double              enough,
+                 const double              error,
                  State<dim>               &state)
   {
-    const unsigned int       n       = stress_space.n_samples;
-    const IrreversibleStress present = sampled_stress(stress_space, state);
-    const auto               square  = [&](const IrreversibleStress &field,
+    const unsigned int n      = stress_space.n_samples;
+    IrreversibleStress shares = sampled_stress(stress_space, state);
+    const auto         square = [&](const IrreversibleStress &field,
                             const std::size_t         c) {
       double result = 0.;
       for (unsigned int s = 0; s < n; ++s)
@@ -305,22 +307,34 @@ namespace Viscoplastic
                   Utilities::fixed_power<2>(deviator(field[c * n + s]).norm());
       return result;
     };
+    std::vector<double> squares(2); // of the shares and of the stress
     for (std::size_t c = 0; c < stress_space.n_cells(); ++c)
       {
         const double of_z = std::sqrt(square(state.z, c)),
                      size = of_z + std::sqrt(square(stress, c));
-        if (of_z == 0.)
-          continue;
         for (unsigned int s = 0; s < n; ++s)
           {
-            const SymmetricTensor<2, 3> mismatch =
-              deviator(stress[c * n + s] - present[c * n + s]);
+            SymmetricTensor<2, 3> &share = shares[c * n + s];
+            share                        = deviator(stress[c * n + s] - share);
             // What has not changed stays as it is to the last digit.
-            if (mismatch.norm() >
-                1e-12 * size / std::sqrt(stress_space.volume(c)))
-              state.z[c * n + s] += of_z / size * mismatch;
+            share *=
+              of_z > 0. && share.norm() >
+                             1e-12 * size / std::sqrt(stress_space.volume(c)) ?
+                of_z / size :
+                0.;
+            unsigned int k = 0;
+            for (const auto &of : {share, stress[c * n + s]})
+              squares[k++] += stress_space.weight(c, s) *
+                              stress_space.moduli(c).complementary_square(of);
           }
       }
+    Utilities::MPI::sum(squares, stress_space.space.communicator, squares);
+    if (std::sqrt(squares[0]) <=
+        enough * std::min(error, std::sqrt(squares[1])))
+      return false;
+    for (std::size_t i = 0; i < shares.size(); ++i)
+      state.z[i] += shares[i];
+    return true;
   }
 
 

@@ -12,6 +12,8 @@ namespace Viscoplastic
     std::vector<T>
     gather(const std::vector<T> &part, const MPI_Comm communicator)
     {
+      if (Utilities::MPI::n_mpi_processes(communicator) == 1)
+        return part; // it would be packed and unpacked
       std::vector<T> result;
       for (const auto &one : Utilities::MPI::all_gather(communicator, part))
         result.insert(result.end(), one.begin(), one.end());

@@ -13,12 +13,48 @@
 
 // A contact problem on the face, by its Schur complement.
 
+extern "C" void
+dsymv_(const char   *triangle,
+       const int    *n,
+       const double *alpha,
+       const double *matrix,
+       const int    *leading_dimension,
+       const double *x,
+       const int    *increment_of_x,
+       const double *beta,
+       double       *y,
+       const int    *increment_of_y);
+
 namespace Viscoplastic
 {
   namespace
   {
     /// Solves on faces of so many unknowns cost next to nothing.
     constexpr unsigned int small_face = 600;
+
+
+
+    /// y := S x. deal.II's product reads all of S, not one triangle, and waits
+    /// for each addition.
+    void
+    multiply(const FullMatrix<double> &S,
+             const Vector<double>     &x,
+             Vector<double>           &y)
+    {
+      const int    n = x.size(), increment = 1;
+      const double one = 1., zero = 0.;
+      if (n > 0)
+        dsymv_("L",
+               &n,
+               &one,
+               &S(0, 0),
+               &n,
+               x.begin(),
+               &increment,
+               &zero,
+               y.begin(),
+               &increment);
+    }
 
 
 
@@ -33,7 +69,7 @@ namespace Viscoplastic
       vmult(Vector<double> &y, const Vector<double> &x) const
       {
         // x lies in the truncated space, where the iteration keeps it.
-        S.vmult(y, motion(x));
+        multiply(S, motion(x), y);
         complete(x, y);
       }
 
@@ -147,12 +183,13 @@ namespace Viscoplastic
       , face_change(face_load)
       , correction(face_load)
       , product(face_load)
+      , residual(face_load)
     {
-      DistributedVector residual(load);
-      solver.matrix.vmult(residual, u);
-      squared_norm = u * residual;
-      residual.sadd(-1., 1., load);
-      y = solver.forward(residual);
+      DistributedVector of_start(load);
+      solver.matrix.vmult(of_start, u);
+      squared_norm = u * of_start;
+      of_start.sadd(-1., 1., load);
+      y = solver.forward(of_start);
       if (face.n_dofs() == 0)
         return;
       // y = (y_i, y_c); the face's load after condensation is L_cc y_c.
@@ -163,16 +200,20 @@ namespace Viscoplastic
     Vector<double>
     face_residual() const override
     {
-      Vector<double> r(face.n_dofs());
-      solver.schur_complement->matrix().vmult(r, face_change);
-      r.sadd(-1., 1., face_load);
-      return r;
+      if (!residual_is_known)
+        {
+          multiply(solver.schur_complement->matrix(), face_change, residual);
+          residual.sadd(-1., 1., face_load);
+          residual_is_known = true;
+        }
+      return residual;
     }
 
     void
     move_face(const Vector<double> &change) override
     {
       face_change += change;
+      residual_is_known = false;
     }
 
     void
@@ -233,7 +274,7 @@ namespace Viscoplastic
     search_terms(const Vector<double> &w) override
     {
       correction = w;
-      solver.schur_complement->matrix().vmult(product, correction);
+      multiply(solver.schur_complement->matrix(), correction, product);
       return {face_residual() * correction, product * correction, product};
     }
 
@@ -241,6 +282,7 @@ namespace Viscoplastic
     take_step(const double step) override
     {
       face_change.add(step, correction);
+      residual_is_known = false;
     }
 
     unsigned int
@@ -269,6 +311,9 @@ namespace Viscoplastic
     Vector<double>           y, face_load, face_change, correction, product;
     FaceTruncation           truncation;
     double                   squared_norm; // of the start
+    /// The residual of face_change, for which each iteration asks thrice.
+    mutable Vector<double> residual;
+    mutable bool           residual_is_known = false;
     /// L^{-1} load, once it has been asked for.
     mutable Vector<double> forward_load;
   };

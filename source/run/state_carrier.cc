@@ -97,14 +97,27 @@ namespace Viscoplastic
       state.initial_u -= state.u;
     // u, which has been interpolated, follows a history that has new slopes;
     // what it cannot follow becomes z, which moves u again, since equilibrium
-    // keeps the volume.
-    const unsigned int n_rounds = scene.has_viscosity() ? 8 : 0;
-    if (n_rounds == 0 || scene.keeps_history_at_points())
+    // keeps the volume. What equilibrium wants of strains on a finer mesh comes
+    // back in each round, so that rounds end once there is little else.
+    bool is_settled = !scene.has_viscosity() || scene.keeps_history_at_points();
+    if (is_settled)
       time_stepper.settle(accepted);
-    for (unsigned int round = 0; round < n_rounds; ++round)
+    constexpr unsigned int max_rounds = 8;
+    const double           error      = this->error_estimator != nullptr ?
+                                          accepted.errors.space :
+                                          std::numeric_limits<double>::infinity();
+    for (unsigned int round = 0; scene.has_viscosity() && round < max_rounds;
+         ++round)
       {
-        share_mismatch(discretization.stress_space, result.stress, state);
+        if (!share_mismatch(discretization.stress_space,
+                            result.stress,
+                            scene.parameters.error_control.algebraic_fraction,
+                            error,
+                            state) &&
+            is_settled)
+          break;
         time_stepper.settle(accepted);
+        is_settled = true;
       }
     // What a finer mesh finds of the initial state is no displacement since.
     if (keeps_displacement)

@@ -149,8 +149,17 @@ namespace
     IrreversibleStress stress =
       body.sample([&](const Point<dim> &) { return 0.76 * s; });
     state.z = body.sample([&](const Point<dim> &) { return 0.75 * s; });
-    share_mismatch(*body.stress_space, stress, state);
-    const double share = 0.75 / (0.75 + 0.76);
+    const auto share_beyond = [&](const double enough, const double error) {
+      return share_mismatch(*body.stress_space, stress, enough, error, state);
+    };
+    const double share = 0.75 / (0.75 + 0.76), part = share * 0.01 / 0.76,
+                 infinite            = std::numeric_limits<double>::infinity();
+    const IrreversibleStress carried = state.z;
+    EXPECT_FALSE(share_beyond(1.0001 * part, infinite));
+    EXPECT_EQ(state.z, carried);
+    EXPECT_TRUE(share_beyond(0.9999 * part, infinite));
+    state.z = carried;
+    EXPECT_TRUE(share_beyond(1.0001 * part, 0.));
     EXPECT_LT(body.max_difference(state.z,
                                   [&](const Point<dim> &) {
                                     return (0.75 + share * 0.01) * s;
@@ -161,10 +170,10 @@ namespace
     const IrreversibleStress before = state.z;
     for (Stress &tensor : stress = state.z)
       tensor += 0.3 * unit_symmetric_tensor<3>();
-    share_mismatch(*body.stress_space, stress, state);
+    EXPECT_FALSE(share_beyond(0., infinite));
     EXPECT_EQ(state.z, before);
     state.z.assign(state.z.size(), Stress());
-    share_mismatch(*body.stress_space, stress, state);
+    EXPECT_FALSE(share_beyond(0., infinite));
     EXPECT_EQ(state.z, IrreversibleStress(state.z.size()));
   }
 

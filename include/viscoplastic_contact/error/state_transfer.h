@@ -125,10 +125,15 @@ namespace Viscoplastic
   /// stress alone, a thousandth of the strain of long creep would be a stress
   /// beyond all others. In each cell z takes its share |z|/(|z| + |sigma|) of
   /// the deviator. @p stress: what has been carried over.
+  ///
+  /// False, and z stays as it is, where all shares together are at most @p
+  /// enough of the stress and of @p error, in energy norms. Collective.
   template <int dim>
-  void
+  bool
   share_mismatch(const StressSpace<dim>   &stress_space,
                  const IrreversibleStress &stress,
+                 const double              enough,
+                 const double              error,
                  State<dim>               &state);
 
 

@@ -46,8 +46,7 @@ namespace Viscoplastic
     /// Of the solvers of steps, of a(.,.) and of the tangents of a quantity;
     /// nothing where all solves of one are alike, or where there is none.
     std::array<std::optional<PreconditionerState>, 3> preconditioners;
-    /// See QuantityEstimator::linearized_at().
-    std::optional<State<dim>> linearized;
+    typename QuantityEstimator<dim>::Memory           quantity;
   };
 
 

@@ -42,11 +42,13 @@ namespace Viscoplastic
               act(contact.multiplier[p][i]);
             }
         }
+      double none = 0.;
       for (TruncationType *truncation : truncations)
-        for (auto *blocks : {&truncation->projector, &truncation->spring})
+        for (auto *blocks :
+             {&truncation->projector, &truncation->spring, &truncation->tilt})
           for (unsigned int i = 0; i < 3; ++i)
             for (unsigned int j = 0; j < 3; ++j)
-              act((*blocks)[node][i][j]);
+              act(blocks->empty() ? none : (*blocks)[node][i][j]);
     }
 
 
@@ -296,7 +298,7 @@ namespace Viscoplastic
         const unsigned int n_points = packed.n_points[next_node++];
         const std::size_t  value = next_value, point = next_point;
         next_point += n_points;
-        next_value += n_points * 5 + truncations.size() * 18;
+        next_value += n_points * 5 + truncations.size() * 27;
         require_sense(next_point <= packed.sticks.size() &&
                       next_value <= packed.values.size());
         if (!node)
@@ -351,7 +353,8 @@ namespace Viscoplastic
     const ContactLayout &layout = face != nullptr ? face->layout() : no_face;
     state.contact = ContactState(std::vector<double>(layout.points.size()));
     for (FaceTruncation *truncation : truncations)
-      for (auto *blocks : {&truncation->projector, &truncation->spring})
+      for (auto *blocks :
+           {&truncation->projector, &truncation->spring, &truncation->tilt})
         blocks->resize(layout.n_nodes());
     std::size_t n_values = 0, n_face_nodes = 0, n_cells = 0;
     for (std::size_t p = 0; p < packed.meshes.size(); ++p)
@@ -403,6 +406,13 @@ namespace Viscoplastic
         require_sense(next == nodal.size() && of_nodes.is_at_end());
       }
 
+    for (FaceTruncation *truncation : truncations)
+      if (std::all_of(truncation->tilt.begin(),
+                      truncation->tilt.end(),
+                      [](const Tensor<2, 3> &tilt) {
+                        return tilt.norm_square() == 0.;
+                      }))
+        truncation->tilt.clear(); // there was none
     for (unsigned int f = 0; f < n_fields; ++f)
       {
         *targets[f] = space.ghosted_vector();

@@ -25,9 +25,9 @@ namespace Viscoplastic
     }
 
     std::string
-    tangents_file(const unsigned int rank)
+    quantity_file(const unsigned int rank)
     {
-      return "tangents_" + Utilities::int_to_string(rank, 5) + ".bin";
+      return "quantity_" + Utilities::int_to_string(rank, 5) + ".bin";
     }
 
 
@@ -94,8 +94,27 @@ namespace Viscoplastic
       for (std::optional<PreconditionerState> &kept : memory.preconditioners)
         if (exchange_presence(archive, kept))
           archive & kept->best_rate & kept->lost_iterations & kept->is_fresh;
-      if (exchange_presence(archive, memory.linearized))
-        archive &memory.linearized->t &memory.linearized->k;
+      std::optional<State<dim>> &linearized = memory.quantity.linearized;
+      if (exchange_presence(archive, linearized))
+        archive & linearized->t & linearized->k;
+    }
+
+
+
+    /// What a quantity of interest has of fields: those that its tangents are
+    /// of, and its dual solutions in the place of what else nodes have.
+    template <int dim>
+    State<dim>
+    fields_of_quantity(const typename QuantityEstimator<dim>::Memory &memory,
+                       const ContactState                            &contact)
+    {
+      State<dim> result;
+      if (memory.linearized)
+        result = *memory.linearized;
+      result.velocity  = memory.w[0];
+      result.initial_u = memory.w[1];
+      result.contact   = contact; // of the same points
+      return result;
     }
 
 
@@ -110,6 +129,15 @@ namespace Viscoplastic
         if (kept)
           result.push_back(&kept->built_for);
       return result;
+    }
+
+    /// Those that dual solutions are of.
+    template <typename MemoryType>
+    auto
+    dual_truncations(MemoryType &memory)
+    {
+      auto &[of_step, of_creep] = memory.quantity.truncations;
+      return std::vector<decltype(&of_step)>{&of_step, &of_creep};
     }
 
 
@@ -294,11 +322,15 @@ namespace Viscoplastic
                   state,
                   truncations(std::as_const(memory)),
                   indicators);
-    const bool is_of_state =
-      memory.linearized && memory.linearized->u.size() > 0;
-    if (is_of_state)
-      packed.files[tangents_file(rank)] = pack_fields<dim>(
-        discretization.stress_space, nullptr, *memory.linearized, {}, {});
+    const State<dim> of_quantity =
+      fields_of_quantity<dim>(memory.quantity, state.contact);
+    if (run.scene.quantity)
+      packed.files[quantity_file(rank)] =
+        pack_fields(discretization.stress_space,
+                    discretization.face.get(),
+                    of_quantity,
+                    dual_truncations(std::as_const(memory)),
+                    Vector<double>());
     if (rank == 0)
       {
         const CoarseMesh coarse_mesh = describe_coarse_mesh(triangulation);
@@ -311,7 +343,8 @@ namespace Viscoplastic
         archive &run.recorder.elapsed_in_all();
         exchange_run(archive, run);
         exchange_memory(archive, memory);
-        archive &is_of_state;
+        for (const DistributedVector *field : nodal_fields(of_quantity))
+          archive &(field->size() > 0);
         packed.files[run_file] = archive.bytes();
       }
     return packed;
@@ -352,7 +385,8 @@ namespace Viscoplastic
     archive &has_estimate &output_times &earlier_seconds;
     exchange_run(archive, run);
     exchange_memory(archive, memory);
-    archive &has_tangents_of_state;
+    for (bool &has_field : has_field_of_quantity)
+      archive &has_field;
     has_bytes_to_spare = !archive.is_at_end();
     check_schedule(run, path);
     for (unsigned int r = 0; r < checkpoint.n_ranks; ++r)
@@ -385,27 +419,33 @@ namespace Viscoplastic
                       run.accepted.state,
                       truncations(memory),
                       run.accepted.space_estimate.squared_indicators);
-      if (complete && has_tangents_of_state)
+      if (complete && run.scene.quantity)
         {
           packed.fields.clear();
           for (unsigned int r = begin; r < end; ++r)
-            packed.fields.push_back(store.read(checkpoint, tangents_file(r)));
-          packed.has_nodal_field  = {{true, false, false, false}};
-          packed.has_sample_field = {{true,
+            packed.fields.push_back(store.read(checkpoint, quantity_file(r)));
+          const bool has_state    = has_field_of_quantity[0];
+          packed.has_nodal_field  = has_field_of_quantity;
+          packed.has_sample_field = {{has_state,
                                       false,
-                                      true,
+                                      has_state,
                                       false,
-                                      packed.has_sample_field[4],
+                                      has_state && packed.has_sample_field[4],
                                       false,
                                       false}};
           packed.has_estimate     = false;
           Vector<double> no_estimate;
-          complete = unpack_fields<dim>(packed,
-                                        discretization.stress_space,
-                                        nullptr,
-                                        *memory.linearized,
-                                        {},
-                                        no_estimate);
+          State<dim>     fields =
+            fields_of_quantity<dim>(memory.quantity, ContactState());
+          complete          = unpack_fields(packed,
+                                   discretization.stress_space,
+                                   discretization.face.get(),
+                                   fields,
+                                   dual_truncations(memory),
+                                   no_estimate);
+          memory.quantity.w = {{fields.velocity, fields.initial_u}};
+          if (memory.quantity.linearized)
+            memory.quantity.linearized = std::move(fields);
         }
       return Utilities::MPI::min(complete ? 1 : 0, communicator) == 1;
     };
@@ -416,7 +456,7 @@ namespace Viscoplastic
                 ExcMessage("The checkpoint '" + store.path(checkpoint.n) +
                            "' does not fit the scene."));
     if (changes.of_data) // of other tangents
-      memory.linearized.reset();
+      memory.quantity = {};
     return memory;
   }
 

@@ -210,12 +210,15 @@ namespace Viscoplastic
     const unsigned int                       n_all = n + (space.axial ? 1 : 0);
     std::array<SymmetricTensor<2, 3>, n + 1> strain;
     strain[n][2][2] = 1. / space.axial_length;
+    std::array<double, n> excess{}; // of the mean divergence, a third of it
     for (unsigned int s = 0; s < n_samples; ++s, g += n_vertices)
       {
         for (unsigned int i = 0; i < n; ++i)
           {
             const unsigned int c = i % dim;
             strain[i]            = 0.;
+            if (mean_pressure)
+              excess[i] = (mean[i] - g[i / dim][c] - hoop(i / dim, c)) / 3.;
             for (unsigned int d = 0; d < dim; ++d)
               strain[i][c][d] = (c == d ? 1. : 0.5) * g[i / dim][d];
             if (h != nullptr)
@@ -227,9 +230,19 @@ namespace Viscoplastic
           {
             const SymmetricTensor<2, 3> stress =
               tangent[s] * strain[j] * weight(cell, s);
+            const double pressure = trace(stress);
+            double       acting[dim][dim];
+            for (unsigned int c = 0; c < dim; ++c)
+              for (unsigned int d = 0; d < dim; ++d)
+                acting[c][d] = stress[c][d];
+            // The work on strain[i], of which most is zero.
             for (unsigned int i = 0; i < j; ++i)
               {
-                const double entry = strain[i] * stress;
+                double entry = pressure * excess[i];
+                for (unsigned int d = 0; d < dim; ++d)
+                  entry += acting[i % dim][d] * g[i / dim][d];
+                if (h != nullptr)
+                  entry += stress[2][2] * hoop(i / dim, i % dim);
                 cell_matrix(i, j) += entry;
                 cell_matrix(j, i) += entry;
               }

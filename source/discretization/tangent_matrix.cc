@@ -37,13 +37,12 @@ namespace Viscoplastic
     double
     poissons_ratio(const SymmetricTensor<4, 3> &tangent)
     {
-      double I_C_I = 0., full_trace = 0.;
+      double I_C_I = 0., full_trace = 0.; // sums of C_iijj, C_ijij
+      for (unsigned int i = 0; i < 6; ++i)
+        full_trace += (i < 3 ? 1. : 2.) * tangent.access_raw_entry(7 * i);
       for (unsigned int i = 0; i < 3; ++i)
         for (unsigned int j = 0; j < 3; ++j)
-          {
-            I_C_I += tangent[i][i][j][j];
-            full_trace += tangent[i][j][i][j];
-          }
+          I_C_I += tangent.access_raw_entry(6 * i + j);
       const double bulk = I_C_I / 9., mu = (full_trace - I_C_I / 3.) / 10.;
       return (3. * bulk - 2. * mu) / (6. * bulk + 2. * mu);
     }
@@ -53,10 +52,12 @@ namespace Viscoplastic
 
   template <int dim>
   TangentMatrix<dim>::TangentMatrix(const FlowLaws<dim>     &laws,
-                                    const DistributedMatrix &elastic)
+                                    const DistributedMatrix &elastic,
+                                    const bool               has_norms)
     : is_constant(laws.have_constant_tangents())
     , laws(laws)
     , elastic_matrix(elastic)
+    , has_norms(has_norms)
   {}
 
 
@@ -83,7 +84,7 @@ namespace Viscoplastic
     max_nu                  = -1.;
     step_size               = 0.;
     tangents.resize(stress_space.n_cells() * n);
-    compliances.resize(tangents.size());
+    compliances.resize(has_norms ? tangents.size() : 0);
     double                largest = 1., largest_nu = -1.;
     const Stiffness      *last = nullptr;
     SymmetricTensor<4, 3> E, E_inverse;
@@ -112,10 +113,12 @@ namespace Viscoplastic
                                    stiffness,
                                    now.point(c, s)) :
                       StepTangent{E, E_inverse};
-              is_same        = is_same && next.tangent == tangents[i];
-              tangents[i]    = next.tangent;
+              is_same     = is_same && next.tangent == tangents[i];
+              tangents[i] = next.tangent;
+              largest_nu  = std::max(largest_nu, poissons_ratio(tangents[i]));
+              if (!has_norms)
+                continue;
               compliances[i] = next.compliance;
-              largest_nu = std::max(largest_nu, poissons_ratio(tangents[i]));
               // The largest eigenvalue of C^-1 E: with a potential, all others
               // are at least 1.
               largest = std::max(largest, trace(compliances[i], E) - 5.);
@@ -149,11 +152,17 @@ namespace Viscoplastic
     std::vector<types::global_dof_index> dofs;
     std::vector<SymmetricTensor<4, 3>>   change(n);
     std::size_t                          index = 0;
+    const Stiffness                     *last  = nullptr;
+    SymmetricTensor<4, 3>                E;
     for (const auto &cell : space.cells)
       {
-        const std::size_t           c     = index++;
-        const SymmetricTensor<4, 3> E     = stress_space.moduli(c).tensor();
-        bool                        flows = false;
+        const std::size_t c     = index++;
+        bool              flows = false;
+        if (&stress_space.moduli(c) != last)
+          {
+            last = &stress_space.moduli(c);
+            E    = last->tensor();
+          }
         for (unsigned int s = 0; s < n; ++s)
           {
             change[s] = tangents[c * n + s] - E;

@@ -407,71 +407,123 @@ namespace Viscoplastic
 
 
   template <int dim>
-  DualSolution<dim>
-  DualProblem<dim>::solve(BulkSolver              &solver,
+  FaceTruncation
+  DualProblem<dim>::truncation(const BulkSolver   &solver,
+                               const ContactState &contact,
+                               const CoulombLaw   *law) const
+  {
+    const ContactLayout &face   = discretization.face->layout();
+    ContactState         linear = contact;
+    for (unsigned int p = 0; p < linear.n_points(); ++p)
+      // Nothing holds a point without friction, or off the foundation.
+      linear.sticks[p] = linear.sticks[p] && (face.points[p].is_obstacle ?
+                                                linear.multiplier[p][0] > 0. :
+                                                linear.bound[p] > 0.);
+    std::vector<Tensor<2, 3>> inverse_diagonal;
+    for (unsigned int node = 0; node < face.n_nodes(); ++node)
+      inverse_diagonal.push_back(
+        invert(solver.face_matrix().diagonal_block(node)));
+    FaceTruncation result =
+      make_truncation(face, linear, inverse_diagonal, stiffest_spring);
+    if (law != nullptr)
+      law->tilt(face, linear, inverse_diagonal, result, stiffest_spring);
+    for (Tensor<2, 3> &spring : result.spring)
+      spring = transpose(spring);
+    result.transposed = true;
+    return result;
+  }
+
+
+
+  template <int dim>
+  bool
+  DualProblem<dim>::renew(BulkSolver              &solver,
                           const DistributedMatrix &matrix,
                           const ContactState      &contact,
-                          const CoulombLaw        *law) const
+                          const CoulombLaw        *law,
+                          DualSolution<dim>       &dual) const
   {
-    const Discretization<dim>  &d     = discretization;
-    const AdmissibleSpace<dim> &space = d.space;
-    DualSolution<dim>           dual;
-    dual.w = prescribed();
-    if (probe)
-      dual.load = &load_density;
-    const DistributedVector start(dual.w);
+    const ContactFace<dim> *face = discretization.slipping_face();
+    DualSolution<dim>       result;
+    if (face != nullptr)
+      result.truncation = truncation(solver, contact, law);
+    if (dual.w.size() > 0 && !quantity.is_sum() &&
+        (face == nullptr ||
+         result.truncation.equals(dual.truncation, face->layout())))
+      return false;
+    result.w                     = prescribed();
     const DistributedVector load = right_side(contact);
-    const bool is_zero = load.l2_norm() == 0. && dual.w.l2_norm() == 0.;
     // The sizes of the step that has been solved are not those of w.
     Forces<dim> forces;
-    forces.u           = start;
+    forces.u           = result.w;
     forces.load.values = load;
-    forces.elastic     = start;
-    const SolutionScale scale{energy_rounding(space, matrix, forces).size};
-    if (d.slipping_face() == nullptr && !is_zero)
-      solver.solve(load, dual.w, dual_tolerance, scale);
+    forces.elastic     = result.w;
+    const SolutionScale scale{
+      energy_rounding(discretization.space, matrix, forces).size};
+    const bool is_zero = load.l2_norm() == 0. && result.w.l2_norm() == 0.;
+    if (face == nullptr && !is_zero)
+      solver.solve(load, result.w, dual_tolerance, scale);
     else if (!is_zero)
       {
-        const ContactLayout &face   = d.face->layout();
-        ContactState         linear = contact;
-        for (unsigned int p = 0; p < linear.n_points(); ++p)
-          // Nothing holds a point without friction, or off the foundation.
-          linear.sticks[p] =
-            linear.sticks[p] &&
-            (face.points[p].is_obstacle ? linear.multiplier[p][0] > 0. :
-                                          linear.bound[p] > 0.);
-        std::vector<Tensor<2, 3>> inverse_diagonal;
-        for (unsigned int node = 0; node < face.n_nodes(); ++node)
-          inverse_diagonal.push_back(
-            invert(solver.face_matrix().diagonal_block(node)));
-        FaceTruncation truncation =
-          make_truncation(face, linear, inverse_diagonal, stiffest_spring);
-        if (law != nullptr)
-          law->tilt(
-            face, linear, inverse_diagonal, truncation, stiffest_spring);
-        for (Tensor<2, 3> &spring : truncation.spring)
-          spring = transpose(spring);
-        truncation.transposed = true;
         // The tolerance is relative to where it begins, which may have much
         // more energy than w. What a few corrections leave is beyond the digits
         // of that, and asked for below.
         constexpr double enough = 30.;
-        solve_truncated(*solver.begin(load, dual.w, scale),
-                        face,
-                        truncation,
+        solve_truncated(*solver.begin(load, result.w, scale),
+                        face->layout(),
+                        result.truncation,
                         /* is_kept = */ false,
-                        Vector<double>(face.n_dofs()),
+                        Vector<double>(face->layout().n_dofs()),
                         dual_tolerance,
                         enough);
       }
+    complete(matrix, load, result);
+    dual = std::move(result);
+    return true;
+  }
 
+
+
+  template <int dim>
+  DualSolution<dim>
+  DualProblem<dim>::restore(const DistributedVector &ghosted_w,
+                            const FaceTruncation    &truncation,
+                            const DistributedMatrix &matrix) const
+  {
+    const AdmissibleSpace<dim> &space = discretization.space;
+    DualSolution<dim>           dual;
+    dual.w = space.owned_vector();
+    for (std::size_t i = 0; i < space.owned.n_elements(); ++i)
+      dual.w.begin()[i] = ghosted_w.begin()[space.relevant.index_within_set(
+        space.owned.nth_index_in_set(i))];
+    dual.truncation            = truncation;
+    dual.truncation.transposed = true;
+    complete(matrix, point_load, dual);
+    return dual;
+  }
+
+
+
+  template <int dim>
+  void
+  DualProblem<dim>::complete(const DistributedMatrix &matrix,
+                             const DistributedVector &load,
+                             DualSolution<dim>       &dual) const
+  {
+    const Discretization<dim>  &d     = discretization;
+    const AdmissibleSpace<dim> &space = d.space;
+    if (probe)
+      dual.load = &load_density;
     DistributedVector elastic = space.owned_vector();
     matrix.vmult(elastic, dual.w);
     dual.norm = std::sqrt(std::max(0., dual.w * elastic));
     // A force that statics fixes, or the bounds of friction, feels no residual:
     // w is a rigid motion or zero, but for rounding.
+    Forces<dim> forces;
+    forces.u = prescribed();
     forces.u += dual.w;
-    forces.elastic = elastic;
+    forces.load.values = load;
+    forces.elastic     = elastic;
     if (energy_rounding(space, matrix, forces).is_all_of_the_strain)
       dual.norm = 0.;
     dual.cartesian = space.ghosted_vector();
@@ -486,7 +538,6 @@ namespace Viscoplastic
       }
     if (d.held_traction)
       d.held_traction->add_density(force, dual.density);
-    return dual;
   }
 
 

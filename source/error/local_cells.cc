@@ -161,18 +161,22 @@ namespace Viscoplastic
   template <int dim>
   std::array<SymmetricTensor<2, 3>, LocalCells<dim>::n_points>
   LocalCells<dim>::strains(const LocalCell   &cell,
-                           const NodalValues &displacements) const
+                           const NodalValues &displacements,
+                           double            *dilatations) const
   {
     const Shape                                &shape = shapes[cell.shape];
     std::array<SymmetricTensor<2, 3>, n_points> result;
     for (unsigned int q = 0; q < n_points; ++q)
       result[q] = strain(gradient(displacements, shape.gradients[q]),
                          strain_zz(displacements, shape.hoops[q]));
-    if (stress_space.mean_dilatation)
+    const bool   dilates = stress_space.mean_dilatation;
+    const double mean = dilates ? trace(mean_strain(cell, displacements)) : 0.;
+    for (unsigned int q = 0; q < n_points; ++q)
       {
-        const double dilatation = trace(mean_strain(cell, displacements));
-        for (SymmetricTensor<2, 3> &strain : result)
-          strain = with_dilatation(strain, dilatation);
+        if (dilatations != nullptr)
+          dilatations[q] = dilates ? trace(result[q]) - mean : 0.;
+        if (dilates)
+          result[q] = with_dilatation(result[q], mean);
       }
     return result;
   }

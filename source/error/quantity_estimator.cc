@@ -63,20 +63,17 @@ namespace Viscoplastic
 
 
 
-    /// a(e_u, e_w) by active cell, of recovered strains.
+    /// E at the samples.
     template <int dim>
-    Vector<double>
-    elastic_products(const StressSpace<dim>    &stress_space,
-                     const SpaceEstimator<dim> &space_estimator,
-                     const State<dim>          &state,
-                     const DualSolution<dim>   &dual)
+    std::vector<SymmetricTensor<4, 3>>
+    elastic_tangents(const StressSpace<dim> &stress_space)
     {
       std::vector<SymmetricTensor<4, 3>> moduli;
       for (std::size_t c = 0; c < stress_space.n_cells(); ++c)
         moduli.insert(moduli.end(),
                       stress_space.n_samples,
                       stress_space.moduli(c).tensor());
-      return space_estimator.multiply_recovered(state, dual, {moduli, 1., {}});
+      return moduli;
     }
   } // namespace
 
@@ -95,7 +92,8 @@ namespace Viscoplastic
   {
     if (is_of_creep(discretization.scene()))
       tangent = std::make_unique<TangentMatrix<dim>>(discretization.laws,
-                                                     discretization.matrix);
+                                                     discretization.matrix,
+                                                     /* has_norms = */ false);
   }
 
 
@@ -146,14 +144,21 @@ namespace Viscoplastic
             linearized->rate_slope = rate.rate;
           }
       }
-    const DualSolution<dim> dual =
-      dual_problem.solve(solver_of_tangents(*tangent, is_new),
-                         tangent->matrix(),
-                         state.contact,
-                         law);
-    typename RecoveryEstimator<dim>::Linearization linearization{
-      tangent->at_samples(), k / time, {}};
-    std::vector<SymmetricTensor<2, 3>> strains(n);
+    if (is_new)
+      dual_of_creep = {};
+    renew(solver_of_tangents(*tangent, is_new),
+          tangent->matrix(),
+          state.contact,
+          law,
+          dual_of_creep);
+    const DualSolution<dim> &dual = dual_of_creep.solution;
+    if (!dual_of_creep.recovered)
+      dual_of_creep.recovered =
+        space_estimator.recovered_of(dual,
+                                     tangent->at_samples(),
+                                     tangent->is_constant);
+    typename RecoveryEstimator<dim>::Linearization linearization{k / time, {}};
+    std::vector<SymmetricTensor<2, 3>>             strains(n);
     std::size_t strained_cell = numbers::invalid_size_type; // whose strains
     if (!tangent->is_constant)
       linearization.remainder = [&](const std::size_t            c,
@@ -173,14 +178,15 @@ namespace Viscoplastic
                                     strain = now.mechanical(strains[s], c, s);
         const LawPoint point               = now.point(c, s);
         // C e = E e + k dG to first order.
-        return stiffness.strain(
-          change - stiffness.stress(e) -
-          k *
-            (flow->step_rate(stress + change, strain + e, k, stiffness, point) -
-             flow->step_rate(stress, strain, k, stiffness, point)));
+        return change - stiffness.stress(e) -
+               k * (flow->step_rate(
+                      stress + change, strain + e, k, stiffness, point) -
+                    flow->step_rate(stress, strain, k, stiffness, point));
       };
     Vector<double> products =
-      space_estimator.multiply_recovered(state, dual, linearization);
+      space_estimator.multiply_recovered(state,
+                                         *dual_of_creep.recovered,
+                                         linearization);
     sides = boundary_defects.missing_sides(state, dual.cartesian);
     // The longer step moves the body more by the same force.
     if (discretization.scene().quantity->is_force())
@@ -196,16 +202,65 @@ namespace Viscoplastic
 
   template <int dim>
   void
-  QuantityEstimator<dim>::restore(const State<dim> &accepted,
-                                  const State<dim> &state)
+  QuantityEstimator<dim>::renew(BulkSolver              &solver,
+                                const DistributedMatrix &matrix,
+                                const ContactState      &contact,
+                                const CoulombLaw        *law,
+                                KeptDual                &kept) const
   {
-    const State<dim> &at = tangent->is_constant ? accepted : state;
-    tangent->linearize(at.u,
-                       at.z,
-                       discretization.laws.at(at.t, at.history),
-                       state.k);
-    linearized = state;
-    solver_of_tangents(*tangent, true);
+    if (!dual_problem.renew(solver, matrix, contact, law, kept.solution))
+      return;
+    kept.residuals.reset();
+    kept.recovered.reset();
+  }
+
+
+
+  template <int dim>
+  typename QuantityEstimator<dim>::Memory
+  QuantityEstimator<dim>::memory() const
+  {
+    Memory       result{linearized, {}, {}};
+    unsigned int i = 0;
+    for (const KeptDual *dual : {&dual_of_step, &dual_of_creep})
+      {
+        if (dual->solution.w.size() > 0)
+          {
+            result.w[i] = discretization.space.ghosted_vector();
+            result.w[i] = dual->solution.w;
+          }
+        result.truncations[i++] = dual->solution.truncation;
+      }
+    return result;
+  }
+
+
+
+  template <int dim>
+  void
+  QuantityEstimator<dim>::restore(const State<dim> &accepted,
+                                  const Memory     &memory)
+  {
+    linearized = memory.linearized;
+    if (linearized)
+      {
+        const State<dim> &at = tangent->is_constant ? accepted : *linearized;
+        tangent->linearize(at.u,
+                           at.z,
+                           discretization.laws.at(at.t, at.history),
+                           linearized->k);
+        solver_of_tangents(*tangent, true);
+      }
+    const auto restored = [&](const unsigned int       i,
+                              const DistributedMatrix &matrix) {
+      return memory.w[i].size() == 0 ?
+               DualSolution<dim>() :
+               dual_problem.restore(memory.w[i], memory.truncations[i], matrix);
+    };
+    dual_of_step  = {restored(0, discretization.matrix), {}, {}};
+    dual_of_creep = {};
+    if (linearized)
+      dual_of_creep.solution = restored(1, tangent->matrix());
   }
 
 
@@ -311,8 +366,10 @@ namespace Viscoplastic
           continue;
         const double         sign = (is_held ? -1. : 1.) * dual_problem.sign();
         const Vector<double> parts =
-          space_estimator.multiply(accepted.state, accepted.forces, dual, 0.)
-            .of_both;
+          space_estimator.multiply(accepted.state,
+                                   accepted.forces,
+                                   space_estimator.residuals_of(dual),
+                                   0.);
         estimate.settled_space +=
           sign * Utilities::MPI::sum(parts.mean_value() * parts.size(),
                                      discretization.space.communicator);
@@ -389,8 +446,8 @@ namespace Viscoplastic
     const CoulombLaw *const         linearized = law ? &*law : nullptr;
     if (!is_sum && d.slipping_face())
       hold(solver, accepted, state.contact, linearized, estimate);
-    const DualSolution<dim> dual =
-      dual_problem.solve(solver, state.contact, linearized);
+    renew(solver, d.matrix, state.contact, linearized, dual_of_step);
+    const DualSolution<dim> &dual = dual_of_step.solution;
     // |J| <= a(w, w)^{1/2} a(u, u)^{1/2}; of a force that statics fixes w is a
     // rigid motion.
     if (!is_sum &&
@@ -417,17 +474,20 @@ namespace Viscoplastic
         const double memory = tangent && end.rate ?
                                 nonlinearity(d.stress_space, state, *end.rate) :
                                 0.;
-        auto         products =
-          space_estimator.multiply(state, end.forces, dual, memory);
-        dual_problem.add_at_meetings(state, products.of_both);
-        Vector<double>      indicators(products.of_both);
+        if (!dual_of_step.residuals)
+          dual_of_step.residuals = space_estimator.residuals_of(dual);
+        const Vector<double> &of_dual  = dual_of_step.residuals->squares;
+        Vector<double>        products = space_estimator.multiply(
+          state, end.forces, *dual_of_step.residuals, memory);
+        dual_problem.add_at_meetings(state, products);
+        Vector<double>      indicators(products);
         std::vector<double> sums(3, 0.);
         const auto          add_up = [&] {
           sums.assign(3, 0.);
           for (unsigned int c = 0; c < indicators.size(); ++c)
             {
               sums[0] += indicators[c];
-              sums[1] += products.of_dual[c];
+              sums[1] += of_dual[c];
               sums[2] += safety * std::abs(indicators[c]);
             }
           Utilities::MPI::sum(sums, d.space.communicator, sums);
@@ -457,8 +517,18 @@ namespace Viscoplastic
                   }
               }
             else
-              indicators =
-                elastic_products(d.stress_space, space_estimator, state, dual);
+              {
+                if (!dual_of_step.recovered)
+                  dual_of_step.recovered =
+                    space_estimator.recovered_of(dual,
+                                                 elastic_tangents(
+                                                   d.stress_space),
+                                                 /* is_linear = */ true);
+                indicators =
+                  space_estimator.multiply_recovered(state,
+                                                     *dual_of_step.recovered,
+                                                     {1., {}});
+              }
             dual_problem.add_at_meetings(state, indicators);
             add_up();
             estimate.space_of_creep =
@@ -466,7 +536,7 @@ namespace Viscoplastic
             // Of elastic bodies the sign is that of residuals.
             if (!creeps || std::abs(of_residuals) > std::abs(sums[0]))
               {
-                indicators = products.of_both;
+                indicators = products;
                 add_up();
               }
           }

@@ -312,7 +312,9 @@ namespace Viscoplastic
               nodal[node + i] / n_vertices;
         missed *= 2. * local.stress_space.volume(c);
         for (const unsigned int v : ends[c])
-          for (unsigned int i = 0; i < components.size() && !is_curved(c, v, u);
+          for (unsigned int i = 0,
+                            n = is_curved(c, v, u) ? 0 : components.size();
+               i < n;
                ++i)
             change.local_element(nodes[c][v] + i) +=
               missed.access_raw_entry(components[i]);
@@ -339,42 +341,43 @@ namespace Viscoplastic
 
   template <int dim>
   std::array<SymmetricTensor<2, 3>, RecoveryEstimator<dim>::n_points>
-  RecoveryEstimator<dim>::dilatations(const unsigned int       c,
-                                      const DistributedVector &u) const
+  RecoveryEstimator<dim>::strains(
+    const unsigned int            c,
+    const DistributedVector      &u,
+    std::array<double, n_points> *dilatations) const
   {
-    std::array<SymmetricTensor<2, 3>, n_points> result;
-    if (!local.stress_space.mean_dilatation)
-      return result;
-    const Cell  &cell  = local.cells[c];
-    const auto   nodal = local.displacements(cell, u.begin());
-    const double mean  = trace(mean_strain(c, u));
-    const auto  &shape = local.shapes[cell.shape];
-    for (unsigned int q = 0; q < n_points; ++q)
-      result[q] = (trace(local.gradient(nodal, shape.gradients[q])) +
-                   local.strain_zz(nodal, shape.hoops[q]) - mean) /
-                  3. * unit_symmetric_tensor<3>();
-    return result;
+    const Cell &cell = local.cells[c];
+    return local.strains(cell,
+                         local.displacements(cell, u.begin()),
+                         dilatations != nullptr ? dilatations->data() :
+                                                  nullptr);
   }
 
 
 
   template <int dim>
   std::array<SymmetricTensor<2, 3>, RecoveryEstimator<dim>::n_points>
-  RecoveryEstimator<dim>::defects(const unsigned int       c,
-                                  const DistributedVector &u) const
+  RecoveryEstimator<dim>::defects(
+    const unsigned int                                 c,
+    const std::array<SymmetricTensor<2, 3>, n_points> &strains) const
   {
-    const Cell &cell = local.cells[c];
-    auto result = local.strains(cell, local.displacements(cell, u.begin()));
-    const double *nodal = values.begin();
-    for (unsigned int q = 0; q < n_points; ++q)
+    std::array<SymmetricTensor<2, 3>, n_points> result;
+    const double                               *nodal = values.begin();
+    for (unsigned int i = 0; i < components.size(); ++i)
       {
-        SymmetricTensor<2, 3> recovered;
+        double at_vertices[n_vertices];
         for (unsigned int v = 0; v < n_vertices; ++v)
-          for (unsigned int i = 0; i < components.size(); ++i)
-            recovered.access_raw_entry(components[i]) +=
-              shape_values[q][v] * nodal[nodes[c][v] + i];
-        result[q] = recovered - result[q];
+          at_vertices[v] = nodal[nodes[c][v] + i];
+        for (unsigned int q = 0; q < n_points; ++q)
+          {
+            double recovered = 0.;
+            for (unsigned int v = 0; v < n_vertices; ++v)
+              recovered += shape_values[q][v] * at_vertices[v];
+            result[q].access_raw_entry(components[i]) = recovered;
+          }
       }
+    for (unsigned int q = 0; q < n_points; ++q)
+      result[q] -= strains[q];
     return result;
   }
 
@@ -543,7 +546,7 @@ namespace Viscoplastic
           {
             const Cell &cell    = local.cells[c];
             const auto &weights = local.shapes[cell.shape].weights;
-            const auto  e       = defects(c, u);
+            const auto  e       = defects(c, strains(c, u));
             for (unsigned int q = 0; q < n_points; ++q)
               squares[c] += weights[q] * (cell.stiffness.stress(e[q]) * e[q]);
             if (deviatoric != nullptr)
@@ -565,49 +568,88 @@ namespace Viscoplastic
 
 
   template <int dim>
+  typename RecoveryEstimator<dim>::OfDual
+  RecoveryEstimator<dim>::of_dual(
+    const DistributedVector                  &w,
+    const std::vector<SymmetricTensor<4, 3>> &tangents,
+    const bool                                is_linear) const
+  {
+    const unsigned int n_samples = local.stress_space.n_samples;
+    const std::size_t  n         = nodes.size() * n_points;
+    const bool         dilates   = local.stress_space.mean_dilatation;
+    OfDual             result;
+    result.stress.resize(n);
+    result.dilatation.resize(dilates ? n : 0);
+    result.of_dilatation.resize(dilates ? n : 0);
+    result.strain.resize(is_linear ? 0 : n);
+    for (const Part &part : parts)
+      {
+        recover(part, w, /* from_inside = */ true);
+        for (const unsigned int c : part.cells)
+          {
+            std::array<double, n_points> dilatation;
+            const auto                   eps = strains(c, w, &dilatation);
+            const auto                   e   = defects(c, eps);
+            for (unsigned int q = 0; q < n_points; ++q)
+              {
+                const std::size_t            i = c * n_points + q;
+                const SymmetricTensor<4, 3> &C =
+                  tangents[c * n_samples + (n_samples == 1 ? 0 : q)];
+                result.stress[i] = C * e[q];
+                if (dilates)
+                  {
+                    result.dilatation[i] = dilatation[q] / 3.;
+                    result.of_dilatation[i] =
+                      result.dilatation[i] * (C * unit_symmetric_tensor<3>());
+                  }
+                if (!is_linear)
+                  result.strain[i] =
+                    local.cells[c].stiffness.strain(C * eps[q]);
+              }
+          }
+      }
+    return result;
+  }
+
+
+
+  template <int dim>
   Vector<double>
   RecoveryEstimator<dim>::multiply(const DistributedVector  &u,
                                    const IrreversibleStress &z,
-                                   const DistributedVector  &w,
+                                   const OfDual             &dual,
                                    const Linearization      &law) const
   {
     const unsigned int  n_samples = local.stress_space.n_samples;
+    const bool          dilates   = local.stress_space.mean_dilatation;
     std::vector<double> products(local.cells.size());
-    std::vector<std::array<SymmetricTensor<2, 3>, n_points>> of_u;
     for (const Part &part : parts)
       {
         recover(part, u, /* from_inside = */ true);
-        of_u.clear();
         for (const unsigned int c : part.cells)
-          of_u.push_back(defects(c, u));
-        recover(part, w, /* from_inside = */ true);
-        for (unsigned int i = 0; i < part.cells.size(); ++i)
           {
-            const unsigned int c       = part.cells[i];
-            const Cell        &cell    = local.cells[c];
-            const auto        &weights = local.shapes[cell.shape].weights;
-            const auto         of_w    = defects(c, w);
-            const auto delta_u = dilatations(c, u), delta_w = dilatations(c, w);
-            const auto strains =
-              law.remainder ?
-                local.strains(cell, local.displacements(cell, w.begin())) :
-                std::array<SymmetricTensor<2, 3>, n_points>();
+            const auto &weights = local.shapes[local.cells[c].shape].weights;
+            std::array<double, n_points> dilatation;
+            const auto e = defects(c, strains(c, u, &dilatation));
             for (unsigned int q = 0; q < n_points; ++q)
               {
-                const unsigned int           s = n_samples == 1 ? 0 : q;
-                const SymmetricTensor<4, 3> &C =
-                  law.tangents[c * n_samples + s];
-                const SymmetricTensor<2, 3> &e = of_u[i][q];
+                const unsigned int s       = n_samples == 1 ? 0 : q;
+                const std::size_t  i       = c * n_points + q;
+                double             product = e[q] * dual.stress[i];
                 // Of a shorter step; creep changes no volumes.
                 const SymmetricTensor<2, 3> of_step =
-                  e - (1. - law.share) * deviator(e);
-                double product = (e - delta_u[q]) * (C * of_w[q]) -
-                                 of_step * (C * delta_w[q]) / law.share;
-                if (n_samples > 1 && !z.empty())
-                  product -= z[c * n_samples + s] * delta_w[q] / law.share;
+                  e[q] - (1. - law.share) * deviator(e[q]);
+                if (dilates)
+                  {
+                    product -= dilatation[q] / 3. * trace(dual.stress[i]) +
+                               of_step * dual.of_dilatation[i] / law.share;
+                    if (n_samples > 1 && !z.empty())
+                      product -= trace(z[c * n_samples + s]) *
+                                 dual.dilatation[i] / law.share;
+                  }
                 if (law.remainder)
                   product -= law.remainder(c, s, -1. * of_step) *
-                             (C * strains[q]) / law.share;
+                             dual.strain[i] / law.share;
                 products[c] += weights[q] * product;
               }
           }

@@ -389,11 +389,11 @@ namespace Viscoplastic
       const Stiffness &stiffness = cells[r.cell].stiffness;
       double           square    = 0.;
       for (unsigned int q = 0; q < n_face_points; ++q)
-        square += r.face.weights[q] *
-                  (compliance_product(
-                     stiffness, r.face.normals[q], r.values[q], r.values[q]) +
-                   2. * r.values[n_face_points + q].norm_square() /
-                     stiffness.smallest_deviatoric_eigenvalue());
+        square +=
+          r.face.weights[q] *
+          (r.values[q] * complied(stiffness, r.face.normals[q], r.values[q]) +
+           2. * r.values[n_face_points + q].norm_square() /
+             stiffness.smallest_deviatoric_eigenvalue());
       eta[r.cell] += factor(r) * square;
     });
     return local.by_active_index(eta);
@@ -452,18 +452,16 @@ namespace Viscoplastic
 
 
   template <int dim>
-  double
-  ResidualEstimator<dim>::compliance_product(const Stiffness      &stiffness,
-                                             const Tensor<1, dim> &normal,
-                                             const Tensor<1, dim> &r,
-                                             const Tensor<1, dim> &s) const
+  Tensor<1, dim>
+  ResidualEstimator<dim>::complied(const Stiffness      &stiffness,
+                                   const Tensor<1, dim> &normal,
+                                   const Tensor<1, dim> &r) const
   {
     if (stiffness.is_isotropic())
       {
-        const double mu          = stiffness.shear_modulus(),
-                     across      = stiffness.bulk_modulus() + 4. / 3. * mu,
-                     normal_part = (r * normal) * (s * normal);
-        return normal_part / across + (r * s - normal_part) / mu;
+        const double mu     = stiffness.shear_modulus(),
+                     across = stiffness.bulk_modulus() + 4. / 3. * mu;
+        return r / mu + (1. / across - 1. / mu) * (r * normal) * normal;
       }
     Tensor<2, dim> acoustic;
     for (unsigned int k = 0; k < dim; ++k)
@@ -476,41 +474,47 @@ namespace Viscoplastic
         for (unsigned int i = 0; i < dim; ++i)
           acoustic[i][k] = traction[i];
       }
-    return r * (invert(acoustic) * s);
+    return invert(acoustic) * r;
   }
 
 
 
   template <int dim>
-  typename ResidualEstimator<dim>::Products
-  ResidualEstimator<dim>::multiply(const Fields &state,
-                                   const Fields &dual) const
+  typename ResidualEstimator<dim>::OfDual
+  ResidualEstimator<dim>::of_dual(const Fields &dual) const
   {
-    std::vector<Residuals> of_state;
-    visit_residuals(state, [&of_state](const LocalResiduals &r) {
-      of_state.push_back(r.values);
-    });
-    std::vector<double> of_both(cells.size()), of_dual(cells.size());
-    auto                next = of_state.cbegin();
+    OfDual              result;
+    std::vector<double> squares(cells.size());
     visit_residuals(dual, [&](const LocalResiduals &r) {
-      const Stiffness &stiffness = cells[r.cell].stiffness;
-      double           both = 0., squares = 0.;
+      const double here     = factor(r);
+      auto        &weighted = result.weighted.emplace_back();
       for (unsigned int q = 0; q < n_face_points; ++q)
         {
-          const double          weight = r.face.weights[q];
-          const Tensor<1, dim> &normal = r.face.normals[q];
-          both +=
-            weight *
-            compliance_product(stiffness, normal, r.values[q], (*next)[q]);
-          squares +=
-            weight *
-            compliance_product(stiffness, normal, r.values[q], r.values[q]);
+          weighted[q] =
+            here * r.face.weights[q] *
+            complied(cells[r.cell].stiffness, r.face.normals[q], r.values[q]);
+          squares[r.cell] += weighted[q] * r.values[q];
         }
-      ++next;
-      of_both[r.cell] += factor(r) * both;
-      of_dual[r.cell] += factor(r) * squares;
     });
-    return {local.by_active_index(of_both), local.by_active_index(of_dual)};
+    result.squares = local.by_active_index(squares);
+    return result;
+  }
+
+
+
+  template <int dim>
+  Vector<double>
+  ResidualEstimator<dim>::multiply(const Fields &state,
+                                   const OfDual &dual) const
+  {
+    std::vector<double> products(cells.size());
+    auto                weighted = dual.weighted.cbegin();
+    visit_residuals(state, [&](const LocalResiduals &r) {
+      for (unsigned int q = 0; q < n_face_points; ++q)
+        products[r.cell] += (*weighted)[q] * r.values[q];
+      ++weighted;
+    });
+    return local.by_active_index(products);
   }
 
 

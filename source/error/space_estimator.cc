@@ -137,36 +137,32 @@ namespace Viscoplastic
 
 
   template <int dim>
-  typename ResidualEstimator<dim>::Products
-  SpaceEstimator<dim>::multiply(const State<dim>        &state,
-                                const Forces<dim>       &forces,
-                                const DualSolution<dim> &dual,
-                                const double             memory) const
+  Vector<double>
+  SpaceEstimator<dim>::multiply(
+    const State<dim>                              &state,
+    const Forces<dim>                             &forces,
+    const typename ResidualEstimator<dim>::OfDual &dual,
+    const double                                   memory) const
   {
-    const FieldsOfState      of_state(discretization, state, forces);
-    const IrreversibleStress none;
-    return residual_estimator->multiply(of_state.fields(memory),
-                                        {dual.cartesian,
-                                         none,
-                                         {},
-                                         dual.density.size() > 0 ?
-                                           &dual.density :
-                                           nullptr,
-                                         0.,
-                                         nullptr,
-                                         dual.load});
+    const FieldsOfState of_state(discretization, state, forces);
+    return residual_estimator->multiply(of_state.fields(memory), dual);
   }
 
 
 
   template <int dim>
-  Vector<double>
-  SpaceEstimator<dim>::multiply_recovered(
-    const State<dim>                                     &state,
-    const DualSolution<dim>                              &dual,
-    const typename RecoveryEstimator<dim>::Linearization &law) const
+  typename ResidualEstimator<dim>::OfDual
+  SpaceEstimator<dim>::residuals_of(const DualSolution<dim> &dual) const
   {
-    return recovery_estimator->multiply(state.u, state.z, dual.cartesian, law);
+    const IrreversibleStress none;
+    return residual_estimator->of_dual(
+      {dual.cartesian,
+       none,
+       {},
+       dual.density.size() > 0 ? &dual.density : nullptr,
+       0.,
+       nullptr,
+       dual.load});
   }
 
 

@@ -278,7 +278,7 @@ namespace Viscoplastic
       result.preconditioners[1] = elastic_solver->bulk().preconditioner_state();
     if (tangent_solver)
       result.preconditioners[2] = tangent_solver->bulk().preconditioner_state();
-    result.linearized = quantity_estimator->linearized_at();
+    result.quantity = quantity_estimator->memory();
     return result;
   }
 
@@ -293,10 +293,11 @@ namespace Viscoplastic
     step_method->restore(accepted, of_steps);
     if (elastic)
       solver_of_elasticity().bulk().restore(elastic);
-    if (!memory.linearized)
+    if (!quantity_estimator)
       return;
-    quantity_estimator->restore(accepted.state, *memory.linearized);
-    tangent_solver->bulk().restore(of_tangents);
+    quantity_estimator->restore(accepted.state, memory.quantity);
+    if (tangent_solver)
+      tangent_solver->bulk().restore(of_tangents);
   }
 
 

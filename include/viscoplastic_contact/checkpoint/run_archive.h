@@ -107,6 +107,6 @@ namespace Viscoplastic
     bool                     has_estimate       = false;
     bool                     has_bytes_to_spare = false;
     StepperMemory<dim>       memory;
-    bool                     has_tangents_of_state = false;
+    std::array<bool, 4>      has_field_of_quantity{};
   };
 } // namespace Viscoplastic

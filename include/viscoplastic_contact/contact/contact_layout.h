@@ -288,6 +288,14 @@ namespace Viscoplastic
       return !face.any(projector != other.projector || spring != other.spring);
     }
 
+    /// Whether another one makes the same system.
+    bool
+    equals(const FaceTruncation &other, const ContactLayout &face) const
+    {
+      return !face.any(projector != other.projector || spring != other.spring ||
+                       tilt != other.tilt || transposed != other.transposed);
+    }
+
     bool
     has_springs(const ContactLayout &face) const
     {

@@ -18,8 +18,11 @@ namespace Viscoplastic
   class TangentMatrix
   {
   public:
-    /// @p elastic is the matrix of a(u, v); it stays in use.
-    TangentMatrix(const FlowLaws<dim> &laws, const DistributedMatrix &elastic);
+    /// @p elastic is the matrix of a(u, v); it stays in use. @p has_norms:
+    /// whether there are norm_ratio() and norm().
+    TangentMatrix(const FlowLaws<dim>     &laws,
+                  const DistributedMatrix &elastic,
+                  const bool               has_norms = true);
 
     /// Whether the tangents depend on the step size alone.
     const bool is_constant;
@@ -81,6 +84,7 @@ namespace Viscoplastic
 
     const FlowLaws<dim>               &laws;
     const DistributedMatrix           &elastic_matrix;
+    const bool                         has_norms;
     std::vector<SymmetricTensor<4, 3>> tangents, compliances; // a sample
     DistributedMatrix                  tangent_matrix;
     double                             step_size = 0., max_nu = -1., ratio = 1.;

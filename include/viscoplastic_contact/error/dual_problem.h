@@ -30,6 +30,9 @@ namespace Viscoplastic
     const DistributedVector *load = nullptr;
     /// a(w, w)^{1/2}.
     double norm = 0.;
+    /// What holds w where the face sticks, and turns with its slip; empty
+    /// without a face.
+    FaceTruncation truncation;
   };
 
 
@@ -92,15 +95,29 @@ namespace Viscoplastic
           const ContactState &contact,
           const CoulombLaw   *law = nullptr) const
     {
-      return solve(solver, discretization.matrix, contact, law);
+      DualSolution<dim> dual;
+      renew(solver, discretization.matrix, contact, law, dual);
+      return dual;
     }
 
-    /// The dual solution with another @p matrix in the place of that of a(.,.).
-    DualSolution<dim>
-    solve(BulkSolver              &solver,
+    /// Make @p dual the solution of a state, with any @p matrix in the place of
+    /// that of a(.,.), unless it is one with this matrix already for which all
+    /// points stick, or slip in the same directions and with the same springs.
+    /// (What loads the work of friction is never the same.) Returns whether it
+    /// is another one now. Collective. Throws ExcMessage.
+    bool
+    renew(BulkSolver              &solver,
           const DistributedMatrix &matrix,
           const ContactState      &contact,
-          const CoulombLaw        *law) const;
+          const CoulombLaw        *law,
+          DualSolution<dim>       &dual) const;
+
+    /// The solution that renew() has made, of its w, here with ghosts, and its
+    /// truncation. Collective.
+    DualSolution<dim>
+    restore(const DistributedVector &ghosted_w,
+            const FaceTruncation    &truncation,
+            const DistributedMatrix &matrix) const;
 
     double
     sign() const
@@ -140,6 +157,18 @@ namespace Viscoplastic
     /// The prescribed values of w, in frames.
     DistributedVector
     prescribed() const;
+
+    /// What holds w at a state.
+    FaceTruncation
+    truncation(const BulkSolver   &solver,
+               const ContactState &contact,
+               const CoulombLaw   *law) const;
+
+    /// Set what follows from w, which @p load has loaded.
+    void
+    complete(const DistributedMatrix &matrix,
+             const DistributedVector &load,
+             DualSolution<dim>       &dual) const;
 
     /// The nodal density of -a(w, .) on the face.
     DistributedVector

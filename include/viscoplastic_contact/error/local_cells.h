@@ -133,8 +133,12 @@ namespace Viscoplastic
 
     /// The strains that act in the elastic form, at the points of a cell: those
     /// of u_h, under mean dilatation with the volumetric part of their mean.
+    /// If asked for, also what the @p dilatations of u_h have beyond that, zero
+    /// otherwise.
     std::array<SymmetricTensor<2, 3>, n_points>
-    strains(const LocalCell &cell, const NodalValues &displacements) const;
+    strains(const LocalCell   &cell,
+            const NodalValues &displacements,
+            double            *dilatations = nullptr) const;
 
     /// Cell means of z in owned cells and ghosts, kept in @p means if z is not
     /// them itself; null without z. Collective.

@@ -111,19 +111,26 @@ namespace Viscoplastic
            const EvaluatedState<dim> &accepted,
            EvaluatedState<dim>       &end) const;
 
-    /// The state (u, z, history; G in the place of rate_slope) and the step
-    /// size k that the tangents of creep are of; k alone if they depend on
-    /// nothing else, nothing before there are any.
-    const std::optional<State<dim>> &
-    linearized_at() const
+    /// What is kept from step to step.
+    struct Memory
     {
-      return linearized;
-    }
+      /// The state (u, z, history; G in the place of rate_slope) and the step
+      /// size k that the tangents of creep are of; k alone if they depend on
+      /// nothing else, nothing before there are any.
+      std::optional<State<dim>> linearized;
+      /// The dual solution of the step and that of creep: w with ghosts, empty
+      /// if there is none, and its truncation.
+      std::array<DistributedVector, 2> w;
+      std::array<FaceTruncation, 2>    truncations;
+    };
 
-    /// Go on with the tangents of @p state, as linearized_at() had it in a run
-    /// that has come to @p accepted. Collective. Throws ExcMessage.
+    Memory
+    memory() const;
+
+    /// Go on with what memory() has had in a run that has come to @p accepted.
+    /// Collective. Throws ExcMessage.
     void
-    restore(const State<dim> &accepted, const State<dim> &state);
+    restore(const State<dim> &accepted, const Memory &memory);
 
   private:
     /// Coulomb's law of the pressure of the step to @p state, whose slip rates
@@ -166,6 +173,24 @@ namespace Viscoplastic
          const CoulombLaw          *law,
          QuantityEstimate          &estimate) const;
 
+    /// A dual solution and what products with it take, made when first asked
+    /// for. The solution is that of later steps, too, while the same points
+    /// stick and slip.
+    struct KeptDual
+    {
+      DualSolution<dim>                                      solution;
+      std::optional<typename ResidualEstimator<dim>::OfDual> residuals;
+      std::optional<typename RecoveryEstimator<dim>::OfDual> recovered;
+    };
+
+    /// DualProblem::renew() of what is kept. Collective. Throws ExcMessage.
+    void
+    renew(BulkSolver              &solver,
+          const DistributedMatrix &matrix,
+          const ContactState      &contact,
+          const CoulombLaw        *law,
+          KeptDual                &kept) const;
+
     const Discretization<dim> &discretization;
     const SpaceEstimator<dim> &space_estimator;
     const TangentSolver        solver_of_tangents;
@@ -174,5 +199,6 @@ namespace Viscoplastic
     /// Of creep, null if nothing creeps, and what it is of.
     std::unique_ptr<TangentMatrix<dim>> tangent;
     mutable std::optional<State<dim>>   linearized;
+    mutable KeptDual                    dual_of_step, dual_of_creep;
   };
 } // namespace Viscoplastic

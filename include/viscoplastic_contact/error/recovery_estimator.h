@@ -37,16 +37,27 @@ namespace Viscoplastic
   class RecoveryEstimator
   {
   public:
-    /// A creeping body, linearized as one step of backward Euler.
+    /// What multiply() takes of a dual solution and the tangents C, at the
+    /// points of owned cells, one cell after another.
+    struct OfDual
+    {
+      /// C e_w.
+      std::vector<SymmetricTensor<2, 3>> stress;
+      /// delta_w/3 and C I delta_w/3; empty without mean dilatation.
+      std::vector<double>                dilatation;
+      std::vector<SymmetricTensor<2, 3>> of_dilatation;
+      /// E^-1 C eps(w_h); empty if the law is linear.
+      std::vector<SymmetricTensor<2, 3>> strain;
+    };
+
+    /// The state of a creeping body, linearized as one step of backward Euler.
     struct Linearization
     {
-      /// The tangent C at each sample.
-      const std::vector<SymmetricTensor<4, 3>> &tangents;
       /// The size of the step as a part of the time that the body has crept,
       /// and so that of its deviatoric strains. At most 1.
       double share;
-      /// The strain at a sample of a cell that a stress error C e takes beyond
-      /// the strain error e; empty if the law is linear.
+      /// E r, which a stress error C e at a sample of a cell is beyond E e and
+      /// what flows; empty if the law is linear.
       std::function<SymmetricTensor<2, 3>(const std::size_t            cell,
                                           const unsigned int           sample,
                                           const SymmetricTensor<2, 3> &e)>
@@ -61,6 +72,13 @@ namespace Viscoplastic
     /// (without singular points). Collective.
     Vector<double>
     estimate(const DistributedVector &u, double *deviatoric = nullptr) const;
+
+    /// What multiply() takes of @p w, as u of estimate(), with the tangent C at
+    /// each sample. Collective.
+    OfDual
+    of_dual(const DistributedVector                  &w,
+            const std::vector<SymmetricTensor<4, 3>> &tangents,
+            const bool                                is_linear) const;
 
     /// a(e_u, e_w) by active cell in the form of the tangents C, of the strain
     /// errors of a displacement and a dual solution with their signs; arguments
@@ -94,7 +112,7 @@ namespace Viscoplastic
     Vector<double>
     multiply(const DistributedVector  &u,
              const IrreversibleStress &z,
-             const DistributedVector  &w,
+             const OfDual             &dual,
              const Linearization      &law) const;
 
   private:
@@ -196,14 +214,18 @@ namespace Viscoplastic
     SymmetricTensor<2, 3>
     mean_strain(const unsigned int cell, const DistributedVector &u) const;
 
-    /// How much div u_h is larger than its mean, at the points of an owned cell
-    /// and as a tensor: zero without mean dilatation.
+    /// eps* - eps_h at the points of an owned cell, from what is recovered and
+    /// eps_h.
     std::array<SymmetricTensor<2, 3>, n_points>
-    dilatations(const unsigned int cell, const DistributedVector &u) const;
+    defects(const unsigned int                                 cell,
+            const std::array<SymmetricTensor<2, 3>, n_points> &strains) const;
 
-    /// eps* - eps_h at the points of an owned cell, from what is recovered.
+    /// The strains that act in an owned cell, and how much div u_h is larger
+    /// than its mean at its points: zero without mean dilatation.
     std::array<SymmetricTensor<2, 3>, n_points>
-    defects(const unsigned int cell, const DistributedVector &u) const;
+    strains(const unsigned int            cell,
+            const DistributedVector      &u,
+            std::array<double, n_points> *dilatations = nullptr) const;
 
     const LocalCells<dim> &local;
     /// The components that strains have, as SymmetricTensor counts them: in the

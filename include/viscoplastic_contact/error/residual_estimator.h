@@ -115,22 +115,30 @@ namespace Viscoplastic
       return largest_offset > 0.;
     }
 
-    /// For each active cell, zero on cells of other ranks.
-    struct Products
+    /// What multiply() takes of a dual solution.
+    struct OfDual
     {
-      /// a(e_u, e_w) and a(e_w, e_w).
-      Vector<double> of_both, of_dual;
+      /// M^-1 r_w at the points of faces times their weights, 1/24 or 1/6 h
+      /// included, in the order of visit_residuals().
+      std::vector<std::array<Tensor<1, dim>, 1u << (dim - 1)>> weighted;
+      /// a(e_w, e_w) for each active cell, zero on cells of other ranks.
+      Vector<double> squares;
     };
 
-    /// The products of the errors of two solutions, with their signs,
+    /// Collective.
+    OfDual
+    of_dual(const Fields &dual) const;
+
+    /// The products of the errors of two solutions, with their signs, for each
+    /// active cell, zero on cells of other ranks:
     ///
     ///     a(e_u, e_w)_K = sum_e 1/24 h (r_u, M^-1 r_w)_e
     ///                     + sum_e 1/6 h (r_u, M^-1 r_w)_e,
     ///
     /// from the residuals r of both as above. No bound: for products of
     /// errors, which have signs. Collective.
-    Products
-    multiply(const Fields &state, const Fields &dual) const;
+    Vector<double>
+    multiply(const Fields &state, const OfDual &dual) const;
 
   private:
     static constexpr unsigned int n_vertices = LocalCells<dim>::n_vertices,
@@ -314,12 +322,11 @@ namespace Viscoplastic
     void
     visit_residuals(const Fields &fields, const Visitor &visit) const;
 
-    /// r . M^-1 s, see multiply().
-    double
-    compliance_product(const Stiffness      &stiffness,
-                       const Tensor<1, dim> &normal,
-                       const Tensor<1, dim> &r,
-                       const Tensor<1, dim> &s) const;
+    /// M^-1 r, see multiply().
+    Tensor<1, dim>
+    complied(const Stiffness      &stiffness,
+             const Tensor<1, dim> &normal,
+             const Tensor<1, dim> &r) const;
 
     const LocalCells<dim>        &local;
     const StressSpace<dim>       &stress_space;

@@ -57,19 +57,34 @@ namespace Viscoplastic
     /// How the residuals of a state and of a dual solution go together; there
     /// has to be a residual estimator. @p memory: of the state, see
     /// ResidualEstimator::Fields. Collective.
-    typename ResidualEstimator<dim>::Products
-    multiply(const State<dim>        &state,
-             const Forces<dim>       &forces,
-             const DualSolution<dim> &dual,
-             const double             memory) const;
+    Vector<double>
+    multiply(const State<dim>                              &state,
+             const Forces<dim>                             &forces,
+             const typename ResidualEstimator<dim>::OfDual &dual,
+             const double                                   memory) const;
+
+    typename ResidualEstimator<dim>::OfDual
+    residuals_of(const DualSolution<dim> &dual) const;
 
     /// The products of both fields' errors by RecoveryEstimator, which includes
     /// the errors that creep has accumulated from those of rates. Collective.
     Vector<double>
     multiply_recovered(
       const State<dim>                                     &state,
-      const DualSolution<dim>                              &dual,
-      const typename RecoveryEstimator<dim>::Linearization &law) const;
+      const typename RecoveryEstimator<dim>::OfDual        &dual,
+      const typename RecoveryEstimator<dim>::Linearization &law) const
+    {
+      return recovery_estimator->multiply(state.u, state.z, dual, law);
+    }
+
+    /// See RecoveryEstimator::of_dual(). Collective.
+    typename RecoveryEstimator<dim>::OfDual
+    recovered_of(const DualSolution<dim>                  &dual,
+                 const std::vector<SymmetricTensor<4, 3>> &tangents,
+                 const bool                                is_linear) const
+    {
+      return recovery_estimator->of_dual(dual.cartesian, tangents, is_linear);
+    }
 
   private:
     const Discretization<dim> &discretization;

@@ -44,8 +44,7 @@ namespace Viscoplastic
     /// Preconditioner states: of the solver of steps, of a(.,.), and of the
     /// tangents of a quantity; absent where there is nothing to remember.
     std::array<std::optional<PreconditionerState>, 3> preconditioners;
-    /// See QuantityEstimator::linearized_at().
-    std::optional<State<dim>> linearized;
+    typename QuantityEstimator<dim>::Memory           quantity;
   };
 
 

@@ -461,10 +461,10 @@ namespace Viscoplastic
                 elastic_products(d.stress_space, space_estimator, state, dual);
             dual_problem.add_at_meetings(state, indicators);
             add_up();
-            estimate.space_of_creep =
-              std::max(estimate.space_of_creep, least_share * sums[2]);
-            // Of elastic bodies the sign is that of residuals.
-            if (!creeps || std::abs(of_residuals) > std::abs(sums[0]))
+            if (creeps)
+              estimate.space_of_creep =
+                std::max(estimate.space_of_creep, least_share * sums[2]);
+            if (std::abs(of_residuals) > std::abs(sums[0]))
               {
                 indicators = products.of_both;
                 add_up();

@@ -260,14 +260,24 @@ namespace Viscoplastic
                                condition.sliding(node.position, state.t),
                              moved = tangential(at_node(u), node.normal),
                              slip = moved - sliding, held = node.held * slip;
-        if (!(held.norm() > 1e-9 * (moved.norm() + sliding.norm())))
+        double beside = 0., nothing = 1e-9 * (moved.norm() + sliding.norm());
+        for (const std::size_t vertex : node.vertices)
           {
-            double beside = 0.;
-            for (const std::size_t vertex : node.vertices)
-              beside =
-                std::max(beside,
-                         std::abs((node.held *
-                                   at(density, vertex))[quantity.component]));
+            beside = std::max(
+              beside,
+              std::abs((node.held * at(density, vertex))[quantity.component]));
+            // Where both bodies are held, slip is what a mean over the face
+            // makes of their strains.
+            if (condition.against)
+              for (const DistributedVector *const field :
+                   {&state.u, &std::as_const(u)})
+                nothing = std::max(nothing,
+                                   0.5 * (node.held * (at(*field, vertex) -
+                                                       at_node(*field)))
+                                           .norm());
+          }
+        if (!(held.norm() > nothing))
+          {
             if (is_force(condition))
               result[node.active_cell] += beside * node.area;
             continue;

@@ -152,11 +152,6 @@ namespace Viscoplastic
           law,
           dual_of_creep);
     const DualSolution<dim> &dual = dual_of_creep.solution;
-    if (!dual_of_creep.recovered)
-      dual_of_creep.recovered =
-        space_estimator.recovered_of(dual,
-                                     tangent->at_samples(),
-                                     tangent->is_constant);
     typename RecoveryEstimator<dim>::Linearization linearization{k / time, {}};
     std::vector<SymmetricTensor<2, 3>>             strains(n);
     std::size_t strained_cell = numbers::invalid_size_type; // whose strains
@@ -185,8 +180,10 @@ namespace Viscoplastic
       };
     Vector<double> products =
       space_estimator.multiply_recovered(state,
-                                         *dual_of_creep.recovered,
-                                         linearization);
+                                         dual,
+                                         tangent->at_samples(),
+                                         linearization,
+                                         dual_of_creep.recovered);
     sides = boundary_defects.missing_sides(state, dual.cartesian);
     // The longer step moves the body more by the same force.
     if (discretization.scene().quantity->is_force())
@@ -211,7 +208,7 @@ namespace Viscoplastic
     if (!dual_problem.renew(solver, matrix, contact, law, kept.solution))
       return;
     kept.residuals.reset();
-    kept.recovered.reset();
+    kept.recovered = {};
   }
 
 
@@ -517,24 +514,19 @@ namespace Viscoplastic
                   }
               }
             else
-              {
-                if (!dual_of_step.recovered)
-                  dual_of_step.recovered =
-                    space_estimator.recovered_of(dual,
-                                                 elastic_tangents(
-                                                   d.stress_space),
-                                                 /* is_linear = */ true);
-                indicators =
-                  space_estimator.multiply_recovered(state,
-                                                     *dual_of_step.recovered,
-                                                     {1., {}});
-              }
+              indicators =
+                space_estimator.multiply_recovered(state,
+                                                   dual,
+                                                   elastic_tangents(
+                                                     d.stress_space),
+                                                   {1., {}},
+                                                   dual_of_step.recovered);
             dual_problem.add_at_meetings(state, indicators);
             add_up();
-            estimate.space_of_creep =
-              std::max(estimate.space_of_creep, least_share * sums[2]);
-            // Of elastic bodies the sign is that of residuals.
-            if (!creeps || std::abs(of_residuals) > std::abs(sums[0]))
+            if (creeps)
+              estimate.space_of_creep =
+                std::max(estimate.space_of_creep, least_share * sums[2]);
+            if (std::abs(of_residuals) > std::abs(sums[0]))
               {
                 indicators = products;
                 add_up();

@@ -95,10 +95,22 @@ namespace Viscoplastic
         const auto  &law   = space.scene.material(id).law;
         const double n     = law && !law->has_constant_tangents() ? 9. : 1.;
         part.largest_share = std::exp2(-2. / (n + 1.));
-        part.inverse_volume.reinit(values);
-        part.inverse_inner_volume.reinit(values);
+        part.inverse_weight.reinit(values);
+        part.inverse_inner_weight.reinit(values);
       }
 
+    // Of the section: rings of cells of one size differ in volume.
+    for (const Cell &cell : local.cells)
+      {
+        const auto    &shape  = local.shapes[cell.shape];
+        Tensor<1, dim> center = cell.origin;
+        for (const Tensor<1, dim> &position : shape.positions)
+          center += position / n_points;
+        widths.push_back(
+          std::pow(shape.volume /
+                     extent(space.scene.plane_model(), Point<dim>(center)),
+                   1. / dim));
+      }
     std::vector<std::map<types::global_dof_index, unsigned int>> hanging(
       parts.size());
     for (unsigned int c = 0; c < cells.stress_space.n_cells(); ++c)
@@ -128,30 +140,30 @@ namespace Viscoplastic
             {
               ends[c].push_back(v);
               for (unsigned int i = 0; i < components.size(); ++i)
-                parts[p].inverse_inner_volume.local_element(nodes[c][v] + i) +=
-                  cells.stress_space.volume(c);
+                parts[p].inverse_inner_weight.local_element(nodes[c][v] + i) +=
+                  1. / widths[c];
             }
         parts[p].cells.push_back(c);
         for (unsigned int v = 0; v < n_vertices; ++v)
           {
             const types::global_dof_index dof = cell->vertex_dof_index(v, 0);
             for (unsigned int i = 0; i < components.size(); ++i)
-              parts[p].inverse_volume.local_element(nodes[c][v] + i) +=
-                cells.stress_space.volume(c);
+              parts[p].inverse_weight.local_element(nodes[c][v] + i) +=
+                1. / widths[c];
             if (constraints.is_constrained(dof))
               hanging[p].emplace(dof, nodes[c][v]);
           }
       }
     for (unsigned int p = 0; p < parts.size(); ++p)
       {
-        NodalVector &volume = parts[p].inverse_volume;
-        for (NodalVector *inverse : {&volume, &parts[p].inverse_inner_volume})
+        NodalVector &weight = parts[p].inverse_weight;
+        for (NodalVector *inverse : {&weight, &parts[p].inverse_inner_weight})
           {
             inverse->compress(VectorOperation::add);
             for (double &value : *inverse)
               value = value > 0. ? 1. / value : 0.;
           }
-        volume.update_ghost_values();
+        weight.update_ghost_values();
         for (const auto &[dof, node] : hanging[p])
           {
             HangingNode result{node, {}};
@@ -161,7 +173,7 @@ namespace Viscoplastic
               {
                 result.parents.emplace_back(place(parent), factor);
                 has_parents &=
-                  volume.local_element(result.parents.back().first) > 0.;
+                  weight.local_element(result.parents.back().first) > 0.;
               }
             if (has_parents)
               parts[p].hanging_nodes.push_back(std::move(result));
@@ -187,15 +199,7 @@ namespace Viscoplastic
     for (unsigned int c = 0; c < local.cells.size(); ++c)
       for (const unsigned int node : local.cells[c].nodes)
         around[node].push_back(c);
-    // Of the section: rings of cells of one size differ in volume.
-    const auto size = [this](const unsigned int c) {
-      const auto    &shape  = local.shapes[local.cells[c].shape];
-      Tensor<1, dim> center = local.cells[c].origin;
-      for (const Tensor<1, dim> &position : shape.positions)
-        center += position / n_points;
-      return shape.volume / extent(local.stress_space.space.scene.plane_model(),
-                                   Point<dim>(center));
-    };
+    const double largest_ratio = std::pow(1.5, 1. / dim); // of widths
     for (unsigned int c = 0; c < nodes.size(); ++c)
       {
         across.emplace_back();
@@ -209,7 +213,8 @@ namespace Viscoplastic
               is_regular &=
                 local.cells[other].is_present &&
                 local.cells[other].material_id == local.cells[c].material_id &&
-                size(other) < 1.5 * size(c) && size(c) < 1.5 * size(other);
+                widths[other] < largest_ratio * widths[c] &&
+                widths[c] < largest_ratio * widths[other];
             if (!is_regular)
               continue;
             for (const unsigned int other : cells)
@@ -230,30 +235,36 @@ namespace Viscoplastic
   template <int dim>
   void
   RecoveryEstimator<dim>::recover(const Part              &part,
-                                  const DistributedVector &u,
-                                  const bool               from_inside) const
+                                  const DistributedVector &u) const
   {
     values              = 0.;
     double *const nodal = values.begin();
     for (const unsigned int c : part.cells)
       {
         const SymmetricTensor<2, 3> integral =
-          local.stress_space.volume(c) * mean_strain(c, u);
+          1. / widths[c] * mean_strain(c, u);
         for (const unsigned int node : nodes[c])
           for (unsigned int i = 0; i < components.size(); ++i)
             nodal[node + i] += integral.access_raw_entry(components[i]);
       }
     values.compress(VectorOperation::add);
-    values.scale(part.inverse_volume);
+    values.scale(part.inverse_weight);
     values.update_ghost_values();
     interpolate_hanging_nodes(part);
-    if (from_inside)
-      {
-        mirror();
-        extrapolate(part, u);
-        mirror();
-        interpolate_hanging_nodes(part);
-      }
+  }
+
+
+
+  template <int dim>
+  std::vector<bool>
+  RecoveryEstimator<dim>::curved_ends(const Part              &part,
+                                      const DistributedVector &u) const
+  {
+    std::vector<bool> result;
+    for (const unsigned int c : part.cells)
+      for (const unsigned int v : ends[c])
+        result.push_back(is_curved(c, v, u));
+    return result;
   }
 
 
@@ -295,8 +306,11 @@ namespace Viscoplastic
   template <int dim>
   void
   RecoveryEstimator<dim>::extrapolate(const Part              &part,
-                                      const DistributedVector &u) const
+                                      const DistributedVector &u,
+                                      const std::vector<bool> &is_left) const
   {
+    mirror();
+    auto        left = is_left.cbegin();
     NodalVector change;
     change.reinit(values);
     const double *const nodal = values.begin();
@@ -310,20 +324,22 @@ namespace Viscoplastic
           for (unsigned int i = 0; i < components.size(); ++i)
             missed.access_raw_entry(components[i]) -=
               nodal[node + i] / n_vertices;
-        missed *= 2. * local.stress_space.volume(c);
+        missed *= 2. / widths[c];
         for (const unsigned int v : ends[c])
-          for (unsigned int i = 0,
-                            n = is_curved(c, v, u) ? 0 : components.size();
-               i < n;
-               ++i)
-            change.local_element(nodes[c][v] + i) +=
-              missed.access_raw_entry(components[i]);
+          {
+            const bool is_skipped = *left++;
+            for (unsigned int i = 0; i < components.size() && !is_skipped; ++i)
+              change.local_element(nodes[c][v] + i) +=
+                missed.access_raw_entry(components[i]);
+          }
       }
     change.compress(VectorOperation::add);
-    change.scale(part.inverse_inner_volume);
+    change.scale(part.inverse_inner_weight);
     values.zero_out_ghost_values();
     values += change;
     values.update_ghost_values();
+    mirror();
+    interpolate_hanging_nodes(part);
   }
 
 
@@ -408,18 +424,17 @@ namespace Viscoplastic
 
   template <int dim>
   std::optional<typename RecoveryEstimator<dim>::Patch>
-  RecoveryEstimator<dim>::patch(const Part        &part,
-                                const unsigned int c,
+  RecoveryEstimator<dim>::patch(const unsigned int c,
                                 const unsigned int vertex) const
   {
     if (across[c][opposite(vertex)] == numbers::invalid_unsigned_int)
       return {};
     const unsigned int node    = nodes[c][opposite(vertex)];
-    const double       volume  = 1. / part.inverse_volume.local_element(node);
-    const double       density = energy_density(c, recovered(node));
+    const double       density = energy_density(c, recovered(node)),
+                 energy        = density * sums.local_element(node + 2);
     return Patch{density,
-                 density * volume,
-                 std::max(0., sums.local_element(node) - density * volume),
+                 energy,
+                 std::max(0., sums.local_element(node) - energy),
                  sums.local_element(node + 1)};
   }
 
@@ -469,6 +484,7 @@ namespace Viscoplastic
           {
             node(sums, c, v, 0) += densities[c] * local.stress_space.volume(c);
             node(sums, c, v, 1) += squares[c];
+            node(sums, c, v, 2) += local.stress_space.volume(c);
           }
       }
     sums.compress(VectorOperation::add);
@@ -482,7 +498,7 @@ namespace Viscoplastic
       {
         std::array<double, n_vertices> growth{};
         for (unsigned int v = 0; v < n_vertices; ++v)
-          if (const auto around = patch(part, c, v);
+          if (const auto around = patch(c, v);
               around && densities[c] > least_growth * around->density &&
               is_curved(c, v, u))
             growth[v] = densities[c] / around->density;
@@ -509,7 +525,7 @@ namespace Viscoplastic
     for (const unsigned int c : part.cells)
       for (unsigned int v = 0; v < n_vertices; ++v)
         if (is_singular(c, v))
-          if (const auto around = patch(part, c, v))
+          if (const auto around = patch(c, v))
             cells.emplace_back(c, v, *around);
     sums = 0.;
     for (const auto &[c, v, around] : cells)
@@ -541,7 +557,7 @@ namespace Viscoplastic
     double              of_deviators = 0.;
     for (const Part &part : parts)
       {
-        recover(part, u, /* from_inside = */ false);
+        recover(part, u);
         for (const unsigned int c : part.cells)
           {
             const Cell &cell    = local.cells[c];
@@ -568,64 +584,84 @@ namespace Viscoplastic
 
 
   template <int dim>
-  typename RecoveryEstimator<dim>::OfDual
-  RecoveryEstimator<dim>::of_dual(
+  void
+  RecoveryEstimator<dim>::renew(
+    const Part                               &part,
     const DistributedVector                  &w,
     const std::vector<SymmetricTensor<4, 3>> &tangents,
-    const bool                                is_linear) const
+    OfDual                                   &dual) const
   {
     const unsigned int n_samples = local.stress_space.n_samples;
-    const std::size_t  n         = nodes.size() * n_points;
-    const bool         dilates   = local.stress_space.mean_dilatation;
-    OfDual             result;
-    result.stress.resize(n);
-    result.dilatation.resize(dilates ? n : 0);
-    result.of_dilatation.resize(dilates ? n : 0);
-    result.strain.resize(is_linear ? 0 : n);
-    for (const Part &part : parts)
+    for (const unsigned int c : part.cells)
       {
-        recover(part, w, /* from_inside = */ true);
-        for (const unsigned int c : part.cells)
+        std::array<double, n_points> dilatation;
+        const auto                   eps = strains(c, w, &dilatation);
+        const auto                   e   = defects(c, eps);
+        for (unsigned int q = 0; q < n_points; ++q)
           {
-            std::array<double, n_points> dilatation;
-            const auto                   eps = strains(c, w, &dilatation);
-            const auto                   e   = defects(c, eps);
-            for (unsigned int q = 0; q < n_points; ++q)
+            const std::size_t            i = c * n_points + q;
+            const SymmetricTensor<4, 3> &C =
+              tangents[c * n_samples + (n_samples == 1 ? 0 : q)];
+            dual.stress[i] = C * e[q];
+            if (!dual.dilatation.empty())
               {
-                const std::size_t            i = c * n_points + q;
-                const SymmetricTensor<4, 3> &C =
-                  tangents[c * n_samples + (n_samples == 1 ? 0 : q)];
-                result.stress[i] = C * e[q];
-                if (dilates)
-                  {
-                    result.dilatation[i] = dilatation[q] / 3.;
-                    result.of_dilatation[i] =
-                      result.dilatation[i] * (C * unit_symmetric_tensor<3>());
-                  }
-                if (!is_linear)
-                  result.strain[i] =
-                    local.cells[c].stiffness.strain(C * eps[q]);
+                dual.dilatation[i] = dilatation[q] / 3.;
+                dual.of_dilatation[i] =
+                  dual.dilatation[i] * (C * unit_symmetric_tensor<3>());
               }
+            if (!dual.strain.empty())
+              dual.strain[i] = local.cells[c].stiffness.strain(C * eps[q]);
           }
       }
-    return result;
   }
 
 
 
   template <int dim>
   Vector<double>
-  RecoveryEstimator<dim>::multiply(const DistributedVector  &u,
-                                   const IrreversibleStress &z,
-                                   const OfDual             &dual,
-                                   const Linearization      &law) const
+  RecoveryEstimator<dim>::multiply(
+    const DistributedVector                  &u,
+    const IrreversibleStress                 &z,
+    const DistributedVector                  &w,
+    const std::vector<SymmetricTensor<4, 3>> &tangents,
+    const Linearization                      &law,
+    OfDual                                   &dual) const
   {
     const unsigned int  n_samples = local.stress_space.n_samples;
     const bool          dilates   = local.stress_space.mean_dilatation;
+    const bool          is_first  = dual.curved.empty();
     std::vector<double> products(local.cells.size());
-    for (const Part &part : parts)
+    if (is_first)
       {
-        recover(part, u, /* from_inside = */ true);
+        const std::size_t n = nodes.size() * n_points;
+        dual.stress.resize(n);
+        dual.dilatation.resize(dilates ? n : 0);
+        dual.of_dilatation.resize(dilates ? n : 0);
+        dual.strain.resize(law.remainder ? n : 0);
+        for (const Part &part : parts)
+          {
+            recover(part, w);
+            dual.curved.push_back(curved_ends(part, w));
+          }
+        dual.left = dual.curved;
+      }
+    for (unsigned int p = 0; p < parts.size(); ++p)
+      {
+        const Part &part = parts[p];
+        recover(part, u);
+        std::vector<bool> left = curved_ends(part, u);
+        for (std::size_t i = 0; i < left.size(); ++i)
+          left[i] = left[i] && dual.curved[p][i];
+        if (Utilities::MPI::max(is_first || left != dual.left[p] ? 1 : 0,
+                                local.stress_space.space.communicator) == 1)
+          {
+            recover(part, w);
+            extrapolate(part, w, left);
+            renew(part, w, tangents, dual);
+            dual.left[p] = left;
+            recover(part, u);
+          }
+        extrapolate(part, u, left);
         for (const unsigned int c : part.cells)
           {
             const auto &weights = local.shapes[local.cells[c].shape].weights;

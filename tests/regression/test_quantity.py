@@ -664,9 +664,11 @@ class PointInCreep(TestCase):
     def test_linear(self):
         law = {"Material/Law": "maxwell", "Material/maxwell/Viscosity": 0.5}
         signed = self.check(**law)
-        # measured: 0.97 to 1.03; 0.11 where planes of symmetry are boundaries
+        # measured: 1.09 to 1.15 (0.97 to 1.03 with means by volume, which do not meet
+        # linear strains beside hanging nodes); 0.11 where planes of symmetry are
+        # boundaries
         self.assertGreater(signed.min(), 0.85)
-        self.assertLess(signed.max(), 1.15)
+        self.assertLess(signed.max(), 1.2)
 
     def test_power_law(self):
         signed = self.check(**{"Material/norton/Exponent": 5})
@@ -787,9 +789,35 @@ class PointInCreep(TestCase):
                 },
             )
             error = known - result["point0_x"][-1]
-            # measured: 1.8, 2.2; by residuals alone 0.54, 0.53
+            # measured: 2.2, 2.3; by residuals alone 0.54, 0.53
             self.assertGreater(result["quantity_space"][-1] / error, 0.7)
             self.assertLess(result["quantity_space"][-1] / error, 3)
+            # measured: 1.02, 1.06; by residuals 0.18, 0.17
+            self.assertClose(result["quantity_correction"][-1], error, 0.15)
+
+    def test_hot(self):
+        """A dual solution that is singular beside a smooth state."""
+
+        def pipe(refinements, **more):
+            return run(
+                "hot_pipe",
+                {
+                    "Geometry/Global refinements": refinements,
+                    "Material/Law": "elastic",
+                    "Material/Volumetric integration": "mean dilatation",
+                    "Output/Points": "100, 0",
+                    "Solver/Contact tolerance": 1e-12,
+                    "Time/Phases": "1: 1",
+                    **more,
+                },
+            )
+
+        result = pipe(0, **of("point0_x"))
+        error = pipe(2)["point0_x"][-1] - result["point0_x"][-1]
+        # measured: 0.82; 23 by half of the sizes, and 16 by signed sums, where the
+        # dual solution is not extrapolated at its singular point
+        self.assertGreater(result["quantity_space"][-1] / abs(error), 0.7)
+        self.assertLess(result["quantity_space"][-1] / abs(error), 3)
 
 
 class EachKind(TestCase):
@@ -1067,6 +1095,32 @@ class OnTheBoundary(TestCase):
             }
             with self.subTest(dim=dim):
                 self.compare("reaction_20_x", 1, ranks, (0.9, 1.2), **pair)
+
+    def test_both_held_by_symmetry(self):
+        """Meshes that do not match: what their mortar makes of two strains is no
+        slip."""
+
+        def blocks(refinements, **more):
+            return run(
+                "two_blocks_2d",
+                {
+                    "Geometry/Global refinements": refinements,
+                    "Material 1/Young's modulus": 20,
+                    "Boundary 3/Role": "free",
+                    "Boundary 22/Role": "contact",
+                    "Boundary 22/Against": 3,
+                    "Boundary 22/Contact law": "unilateral",
+                    "Boundary 22/Friction law": "coulomb",
+                    "Boundary 22/Friction coefficient": 0.3,
+                    **more,
+                },
+            )
+
+        result = blocks(0, **of("friction_force_x"))
+        error = blocks(2)["friction_force_x"][-1] - result["friction_force_x"][-1]
+        # measured: 4.5; 29 with the bound of the node at the corner
+        self.assertGreater(result["quantity_space"][-1] / abs(error), 0.7)
+        self.assertLess(result["quantity_space"][-1] / abs(error), 6)
 
     def test_straight_sides(self):
         """Shells: what statics says of sections and forces holds for the body, not

@@ -180,7 +180,7 @@ namespace Viscoplastic
     {
       DualSolution<dim>                                      solution;
       std::optional<typename ResidualEstimator<dim>::OfDual> residuals;
-      std::optional<typename RecoveryEstimator<dim>::OfDual> recovered;
+      typename RecoveryEstimator<dim>::OfDual                recovered;
     };
 
     /// DualProblem::renew() of what is kept. Collective. Throws ExcMessage.

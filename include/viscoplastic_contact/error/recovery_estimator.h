@@ -14,7 +14,7 @@ namespace Viscoplastic
 {
   /// The estimate of Zienkiewicz and Zhu: how far the strain eps_h of u_h is
   /// from a continuous one, eps*, whose values at the nodes are means of the
-  /// cells around them, weighted by volume (materials apart),
+  /// cells around them, weighted by 1/width (materials apart),
   ///
   ///     eta_K^2 = int_K (eps* - eps_h) : E (eps* - eps_h).
   ///
@@ -48,6 +48,9 @@ namespace Viscoplastic
       std::vector<SymmetricTensor<2, 3>> of_dilatation;
       /// E^-1 C eps(w_h); empty if the law is linear.
       std::vector<SymmetricTensor<2, 3>> strain;
+      /// By part: the ends at which eps* of w_h is curved, and those from which
+      /// neither strain is extrapolated.
+      std::vector<std::vector<bool>> curved, left;
     };
 
     /// The state of a creeping body, linearized as one step of backward Euler.
@@ -73,16 +76,10 @@ namespace Viscoplastic
     Vector<double>
     estimate(const DistributedVector &u, double *deviatoric = nullptr) const;
 
-    /// What multiply() takes of @p w, as u of estimate(), with the tangent C at
-    /// each sample. Collective.
-    OfDual
-    of_dual(const DistributedVector                  &w,
-            const std::vector<SymmetricTensor<4, 3>> &tangents,
-            const bool                                is_linear) const;
-
     /// a(e_u, e_w) by active cell in the form of the tangents C, of the strain
-    /// errors of a displacement and a dual solution with their signs; arguments
-    /// and result as of estimate().
+    /// errors of a displacement and a dual solution @p w with their signs;
+    /// @p tangents are by sample, other arguments and the result as of
+    /// estimate(). What is taken of w is kept in @p dual, empty at first.
     ///
     ///     int e_u : C e_w - int r(-e_u) : C eps(w_h)
     ///
@@ -96,10 +93,10 @@ namespace Viscoplastic
     /// Signs leave little of the sum, so that two things count here that do not
     /// in squares. Means at a boundary miss half of what a strain varies by in
     /// a cell: eps* is extrapolated there, so that linear strains on boxes are
-    /// met everywhere; but not from cells where is_curved(), as at the corners
-    /// of clamped boundaries, whose product it would take away. A plane of
-    /// symmetry is no boundary: strains go on beyond it, mirrored, and have no
-    /// shear along it (if materials are isotropic). And under mean
+    /// met everywhere; but not from cells where both are is_curved(), as at the
+    /// corners of clamped boundaries, whose product it would take away. A plane
+    /// of symmetry is no boundary: strains go on beyond it, mirrored, and have
+    /// no shear along it (if materials are isotropic). And under mean
     /// dilatation pressures do work on what div u_h and div w_h vary by in
     /// cells, delta:
     ///
@@ -110,10 +107,12 @@ namespace Viscoplastic
     /// (if it does: @p z may be cell means, or empty), the equations do not.
     /// Collective.
     Vector<double>
-    multiply(const DistributedVector  &u,
-             const IrreversibleStress &z,
-             const OfDual             &dual,
-             const Linearization      &law) const;
+    multiply(const DistributedVector                  &u,
+             const IrreversibleStress                 &z,
+             const DistributedVector                  &w,
+             const std::vector<SymmetricTensor<4, 3>> &tangents,
+             const Linearization                      &law,
+             OfDual                                   &dual) const;
 
   private:
     static constexpr unsigned int n_vertices = LocalCells<dim>::n_vertices,
@@ -132,11 +131,13 @@ namespace Viscoplastic
     struct Part
     {
       std::vector<unsigned int> cells;
-      double                    largest_share;  // q of singular points
-      NodalVector               inverse_volume; // of the cells around
+      double                    largest_share; // q of singular points
+      /// Of the cells around, each with the inverse of its width: so linear
+      /// strains are met also where cells of two sizes meet.
+      NodalVector inverse_weight;
       /// Of those around a node at the boundary with a vertex inside opposite
       /// to it.
-      NodalVector inverse_inner_volume;
+      NodalVector inverse_inner_weight;
       /// Those that have the material at all of their parents take what is
       /// between them.
       std::vector<HangingNode> hanging_nodes;
@@ -153,9 +154,7 @@ namespace Viscoplastic
     /// That around the vertex of cell @p c opposite to @p vertex, from what is
     /// recovered and summed; none where cells are not those of a regular mesh.
     std::optional<Patch>
-    patch(const Part        &part,
-          const unsigned int c,
-          const unsigned int vertex) const;
+    patch(const unsigned int c, const unsigned int vertex) const;
 
     /// Whether strains go on from a cell at its vertex to the one across the
     /// patch as they do at singular points: K + O - 2 P of the means in the
@@ -191,16 +190,31 @@ namespace Viscoplastic
     static unsigned int
     opposite(const unsigned int vertex);
 
-    /// Set the strains at the nodes of a part; at its boundary, means of its
-    /// cells or @p from_inside. Collective.
+    /// Set the strains at the nodes of a part to means of its cells.
+    /// Collective.
     void
-    recover(const Part              &part,
-            const DistributedVector &u,
-            const bool               from_inside) const;
+    recover(const Part &part, const DistributedVector &u) const;
 
-    /// Add to the strains at the boundary what the cell means of eps* miss.
+    /// Whether strains that have been recovered are curved, for all ends of a
+    /// part in turn.
+    std::vector<bool>
+    curved_ends(const Part &part, const DistributedVector &u) const;
+
+    /// Mirror recovered strains at planes of symmetry, and add to those at the
+    /// boundary what the cell means of eps* miss, but for ends that are left.
+    /// Collective.
     void
-    extrapolate(const Part &part, const DistributedVector &u) const;
+    extrapolate(const Part              &part,
+                const DistributedVector &u,
+                const std::vector<bool> &is_left) const;
+
+    /// Set what is taken of @p w in the cells of a part, whose strains have
+    /// been recovered.
+    void
+    renew(const Part                               &part,
+          const DistributedVector                  &w,
+          const std::vector<SymmetricTensor<4, 3>> &tangents,
+          OfDual                                   &dual) const;
 
     /// Set the shear along planes of symmetry to zero.
     void
@@ -246,6 +260,8 @@ namespace Viscoplastic
     /// Shape functions at the points of a cell.
     std::array<std::array<double, n_vertices>, n_points> shape_values;
     std::vector<Part>                                    parts;
+    /// Of cells, owned or not: the root of their area, or of volume.
+    std::vector<double> widths;
 
     /// eps* at the nodes; kept, since a new vector for each step costs as much
     /// as to fill it.

@@ -71,19 +71,13 @@ namespace Viscoplastic
     Vector<double>
     multiply_recovered(
       const State<dim>                                     &state,
-      const typename RecoveryEstimator<dim>::OfDual        &dual,
-      const typename RecoveryEstimator<dim>::Linearization &law) const
+      const DualSolution<dim>                              &dual,
+      const std::vector<SymmetricTensor<4, 3>>             &tangents,
+      const typename RecoveryEstimator<dim>::Linearization &law,
+      typename RecoveryEstimator<dim>::OfDual              &kept) const
     {
-      return recovery_estimator->multiply(state.u, state.z, dual, law);
-    }
-
-    /// See RecoveryEstimator::of_dual(). Collective.
-    typename RecoveryEstimator<dim>::OfDual
-    recovered_of(const DualSolution<dim>                  &dual,
-                 const std::vector<SymmetricTensor<4, 3>> &tangents,
-                 const bool                                is_linear) const
-    {
-      return recovery_estimator->of_dual(dual.cartesian, tangents, is_linear);
+      return recovery_estimator->multiply(
+        state.u, state.z, dual.cartesian, tangents, law, kept);
     }
 
   private:

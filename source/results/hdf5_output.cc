@@ -15,9 +15,9 @@
 #endif
 
 // The body as files of HDF5, which ranks write together, with a description in
-// XDMF: a value of vectors at each node, of means in each cell. Not by deal.II's
-// write_hdf5_parallel(): a thread may not call MPI, and it writes doubles and
-// tells of a full disk in debug builds alone.
+// XDMF: a value of vectors at each node, of means in each cell. Not by
+// deal.II's write_hdf5_parallel(): a thread may not call MPI, and it writes
+// doubles and tells of a full disk in debug builds alone.
 
 namespace Viscoplastic
 {

@@ -645,6 +645,8 @@ namespace Viscoplastic
           }
         dual.left = dual.curved;
       }
+    AssertDimension(dual.strain.size(),
+                    law.remainder ? nodes.size() * n_points : 0);
     for (unsigned int p = 0; p < parts.size(); ++p)
       {
         const Part &part = parts[p];

@@ -294,8 +294,12 @@ namespace
           (2. * samples.position(c, s)[0] - samples.position(c, s)[1]) *
           unit_symmetric_tensor<3>());
     const RecoveryEstimator<dim> estimator(cells);
-    const auto   dual = estimator.of_dual(w, tangents, /* is_linear = */ false);
-    const auto   products = estimator.multiply(u, z, dual, {1., {}});
+    const auto                   multiply =
+      [&](const typename RecoveryEstimator<dim>::Linearization &law) {
+        typename RecoveryEstimator<dim>::OfDual dual;
+        return estimator.multiply(u, z, w, tangents, law, dual);
+      };
+    const auto   products = multiply({1., {}});
     const double mu = 1. / 2.8, K = 1. / 0.6, lambda = K - 2. / 3. * mu;
     for (const auto &cell : body.space->cells)
       {
@@ -328,10 +332,9 @@ namespace
         return beyond;
       };
     };
-    const auto more = estimator.multiply(u, z, dual, {1., remainder(errors)}),
-               half = estimator.multiply(u, z, dual, {0.5, {}}),
-               half_more =
-                 estimator.multiply(u, z, dual, {0.5, remainder(halves)});
+    const auto more      = multiply({1., remainder(errors)}),
+               half      = multiply({0.5, {}}),
+               half_more = multiply({0.5, remainder(halves)});
     ASSERT_EQ(errors.size(), halves.size());
     for (std::size_t i = 0; i < errors.size(); ++i)
       EXPECT_NEAR((errors[i] - 0.5 * deviator(errors[i]) - halves[i]).norm(),

@@ -9,7 +9,11 @@ are those of the command line, {"Section/Entry": value}.
 TOLERANCES = (0.1, 0.03, 0.01, 0.003)
 
 # Of all studies, unless a scene says otherwise.
-COUPLED = {"Solver/Contact tolerance": "0", "Output/Fields every": "0"}
+COUPLED = {
+    "Solver/Contact tolerance": "0",
+    "Output/Fields every": "0",
+    "Output/Fields interval": "0",
+}
 
 SCHEMES = ("forward Euler", "backward Euler", "Heun")
 

@@ -159,6 +159,18 @@ namespace
     EXPECT_EQ(state.z, carried);
     EXPECT_TRUE(share_beyond(0.9999 * part, infinite));
     state.z = carried;
+    // Half of the stress, in the energy norm.
+    const StressSpace<dim> &space  = *body.stress_space;
+    double                  square = 0.;
+    for (std::size_t c = 0; c < space.n_cells(); ++c)
+      for (unsigned int q = 0; q < space.n_samples; ++q)
+        square +=
+          space.weight(c, q) * space.moduli(c).complementary_square(0.76 * s);
+    const double half =
+      0.5 * std::sqrt(Utilities::MPI::sum(square, space.space.communicator));
+    EXPECT_FALSE(share_beyond(2.0002 * part, half));
+    EXPECT_TRUE(share_beyond(1.9998 * part, half));
+    state.z = carried;
     EXPECT_TRUE(share_beyond(1.0001 * part, 0.));
     EXPECT_LT(body.max_difference(state.z,
                                   [&](const Point<dim> &) {

@@ -131,7 +131,9 @@ namespace Viscoplastic
     const StressSummary<dim> &stress   = quantities.stress;
     const FrictionIdentities &friction = quantities.friction;
     run.n_steps                        = step.time_step.n;
-    run.t                              = t;
+    run.n_cells = discretization->space.dof_handler.get_triangulation()
+                    .n_global_active_cells();
+    run.t = t;
     if (discretization->tension)
       run.tension_share.update(quantities.tension_area /
                                  discretization->tension->area(),

@@ -44,8 +44,13 @@ namespace Viscoplastic
     bool
     is_too_coarse(const RunSummary<dim> &run)
     {
+      constexpr double       much_of_something = 0.5, much_of_nothing = 0.1;
+      constexpr unsigned int most_cells = 20000; // of the next one
       return !run.quantity.empty() && run.errors &&
-             run.errors->relative() > 0.5;
+             run.errors->relative() > (run.quantity_errors.size > 0. ?
+                                         much_of_something :
+                                         much_of_nothing) &&
+             (run.n_cells << dim) <= most_cells;
     }
   } // namespace
 

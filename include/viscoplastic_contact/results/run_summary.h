@@ -175,6 +175,8 @@ namespace Viscoplastic
     /// The number of steps, and what step control did to them; absent where the
     /// steps are those of the phases.
     unsigned int n_steps = 0;
+    /// Of the last mesh.
+    types::global_cell_index n_cells = 0;
     /// Steps in which nothing has changed, which took no solve.
     unsigned int                unchanged_steps = 0;
     std::optional<StepCounts>   steps;

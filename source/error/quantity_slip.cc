@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <viscoplastic_contact/error/quantity_estimator.h>
+
+// What slip has settled of a quantity's error: where points come to rest, turn
+// or go on under other bounds.
+
+namespace Viscoplastic
+{
+  template <int dim>
+  void
+  QuantityEstimator<dim>::settle(const EvaluatedState<dim> &accepted,
+                                 const ContactState        &contact,
+                                 QuantityEstimate          &estimate) const
+  {
+    const ContactState &old = accepted.state.contact;
+    // Bounds of what has slipped, by how much they are less for what goes on
+    // slipping, and the quadrature.
+    std::vector<double> sums(3, 0.);
+    for (unsigned int p = 0; p < contact.n_points(); ++p)
+      {
+        if (discretization.face->layout().points[p].is_obstacle)
+          continue;
+        if (!old.sticks[p])
+          {
+            sums[0] += old.bound[p];
+            sums[1] += old.bound[p];
+            if (!contact.sticks[p] &&
+                contact.multiplier[p] * old.multiplier[p] >= 0.)
+              sums[1] -= contact.bound[p];
+          }
+        if (!contact.sticks[p])
+          sums[2] -=
+            0.5 * (contact.bound[p] - old.bound[p]) * contact.slip[p].norm();
+      }
+    Utilities::MPI::sum(sums, discretization.space.communicator, sums);
+    const QuantityEstimate &before = accepted.errors.quantity;
+    const double            share  = sums[0] > 0. ? sums[1] / sums[0] : 0.;
+    estimate.settled_space =
+      before.settled_space +
+      share * (before.space_correction - before.settled_space);
+    estimate.settled_time =
+      before.settled_time + sums[2] +
+      share * (before.time_correction - before.settled_time);
+  }
+
+
+
+  template <int dim>
+  void
+  QuantityEstimator<dim>::hold(BulkSolver                &solver,
+                               const EvaluatedState<dim> &accepted,
+                               const ContactState        &contact,
+                               const CoulombLaw          *law,
+                               QuantityEstimate          &estimate) const
+  {
+    const QuantityEstimate &before = accepted.errors.quantity;
+    const ContactState     &old    = accepted.state.contact;
+    const auto holds = [&](const ContactState &c, const unsigned int p) {
+      return !discretization.face->layout().points[p].is_obstacle &&
+             c.sticks[p] && c.bound[p] > 0.;
+    };
+    ContactState held     = old;
+    bool         has_rest = false;
+    double       sums[2] = {0., 0.}; // bounds of what has stuck, and still does
+    for (unsigned int p = 0; p < contact.n_points(); ++p)
+      if (holds(old, p))
+        {
+          sums[0] += old.bound[p];
+          sums[1] += holds(contact, p) ? old.bound[p] : 0.;
+        }
+      else if (holds(contact, p))
+        {
+          has_rest = held.sticks[p] = true;
+          held.bound[p]             = contact.bound[p];
+        }
+    Utilities::MPI::sum(ArrayView<const double>(sums),
+                        discretization.space.communicator,
+                        ArrayView<double>(sums));
+    const double share     = sums[0] > 0. ? sums[1] / sums[0] : 0.;
+    estimate.settled_space = share * before.settled_space;
+    estimate.settled_time  = share * before.settled_time;
+    // Where the run begins points are where they are by definition.
+    if (accepted.state.k == 0. || !discretization.face->layout().any(has_rest))
+      return;
+    for (const bool is_held : {false, true})
+      {
+        const DualSolution<dim> dual =
+          dual_problem.solve(solver, is_held ? held : old, law);
+        if (!(dual.norm > 0.))
+          continue;
+        const double         sign = (is_held ? -1. : 1.) * dual_problem.sign();
+        const Vector<double> parts =
+          space_estimator.multiply(accepted.state,
+                                   accepted.forces,
+                                   space_estimator.residuals_of(dual),
+                                   0.);
+        estimate.settled_space +=
+          sign * Utilities::MPI::sum(parts.mean_value() * parts.size(),
+                                     discretization.space.communicator);
+        if (!discretization.scene().has_viscosity())
+          continue;
+        DistributedVector load = discretization.space.owned_vector();
+        add_irreversible_load(discretization.stress_space,
+                              accepted.state.time_error,
+                              load);
+        estimate.settled_time += sign * (load * dual.w);
+      }
+  }
+
+
+
+  template <int dim>
+  void
+  QuantityEstimator<dim>::add_slip_defects(BulkSolver              &solver,
+                                           const SlipDefects       &defects,
+                                           const ContactState      &contact,
+                                           const CoulombLaw        *law,
+                                           const DualSolution<dim> &dual,
+                                           QuantityEstimate &estimate) const
+  {
+    const ContactLayout &face    = discretization.face->layout();
+    ContactState         held    = contact;
+    bool                 is_held = false;
+    for (unsigned int p = 0; p < contact.n_points(); ++p)
+      if (defects.resting[p].norm_square() > 0.)
+        is_held = held.sticks[p] = true;
+    const Vector<double> force   = face.any(is_held) ?
+                                     dual_problem.solve(solver, held, law).force :
+                                     dual.force;
+    double               turning = 0., resting = 0.;
+    for (unsigned int p = 0; p < contact.n_points(); ++p)
+      {
+        const ContactLayout::Point &point = face.points[p];
+        const Tensor<1, 3>          f     = face.node_values(force, point.node);
+        turning += f * motion_with_slip(point, defects.turning[p]);
+        resting += std::abs(f * motion_with_slip(point, defects.resting[p]));
+      }
+    estimate.turning += std::abs(face.sum(turning));
+    estimate.resting += face.sum(resting);
+  }
+
+
+
+  VISCOPLASTIC_INSTANTIATE_MEMBER(QuantityEstimator, settle);
+  VISCOPLASTIC_INSTANTIATE_MEMBER(QuantityEstimator, hold);
+  VISCOPLASTIC_INSTANTIATE_MEMBER(QuantityEstimator, add_slip_defects);
+} // namespace Viscoplastic

@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <viscoplastic_contact/error/recovery_estimator.h>
+
+// Products of the recovered errors of a state and of a dual solution.
+
+namespace Viscoplastic
+{
+  template <int dim>
+  void
+  RecoveryEstimator<dim>::renew(
+    const Part                               &part,
+    const DistributedVector                  &w,
+    const std::vector<SymmetricTensor<4, 3>> &tangents,
+    OfDual                                   &dual) const
+  {
+    const unsigned int n_samples = local.stress_space.n_samples;
+    for (const unsigned int c : part.cells)
+      {
+        std::array<double, n_points> dilatation;
+        const auto                   eps = strains(c, w, &dilatation);
+        const auto                   e   = defects(c, eps);
+        for (unsigned int q = 0; q < n_points; ++q)
+          {
+            const std::size_t            i = c * n_points + q;
+            const SymmetricTensor<4, 3> &C =
+              tangents[c * n_samples + (n_samples == 1 ? 0 : q)];
+            dual.stress[i] = C * e[q];
+            if (!dual.dilatation.empty())
+              {
+                dual.dilatation[i] = dilatation[q] / 3.;
+                dual.of_dilatation[i] =
+                  dual.dilatation[i] * (C * unit_symmetric_tensor<3>());
+              }
+            if (!dual.strain.empty())
+              dual.strain[i] = local.cells[c].stiffness.strain(C * eps[q]);
+          }
+      }
+  }
+
+
+
+  template <int dim>
+  Vector<double>
+  RecoveryEstimator<dim>::multiply(
+    const DistributedVector                  &u,
+    const IrreversibleStress                 &z,
+    const DistributedVector                  &w,
+    const std::vector<SymmetricTensor<4, 3>> &tangents,
+    const Linearization                      &law,
+    OfDual                                   &dual) const
+  {
+    const unsigned int  n_samples = local.stress_space.n_samples;
+    const bool          dilates   = local.stress_space.mean_dilatation;
+    const bool          is_first  = dual.curved.empty();
+    std::vector<double> products(local.cells.size());
+    if (is_first)
+      {
+        const std::size_t n = nodes.size() * n_points;
+        dual.stress.resize(n);
+        dual.dilatation.resize(dilates ? n : 0);
+        dual.of_dilatation.resize(dilates ? n : 0);
+        dual.strain.resize(law.remainder ? n : 0);
+        for (const Part &part : parts)
+          {
+            recover(part, w);
+            dual.curved.push_back(curved_ends(part, w));
+          }
+        dual.left = dual.curved;
+      }
+    AssertDimension(dual.strain.size(),
+                    law.remainder ? nodes.size() * n_points : 0);
+    for (unsigned int p = 0; p < parts.size(); ++p)
+      {
+        const Part &part = parts[p];
+        recover(part, u);
+        std::vector<bool> left = curved_ends(part, u);
+        for (std::size_t i = 0; i < left.size(); ++i)
+          left[i] = left[i] && dual.curved[p][i];
+        if (Utilities::MPI::max(is_first || left != dual.left[p] ? 1 : 0,
+                                local.stress_space.space.communicator) == 1)
+          {
+            recover(part, w);
+            extrapolate(part, w, left);
+            renew(part, w, tangents, dual);
+            dual.left[p] = left;
+            recover(part, u);
+          }
+        extrapolate(part, u, left);
+        for (const unsigned int c : part.cells)
+          {
+            const auto &weights = local.shapes[local.cells[c].shape].weights;
+            std::array<double, n_points> dilatation;
+            const auto e = defects(c, strains(c, u, &dilatation));
+            for (unsigned int q = 0; q < n_points; ++q)
+              {
+                const unsigned int s       = n_samples == 1 ? 0 : q;
+                const std::size_t  i       = c * n_points + q;
+                double             product = e[q] * dual.stress[i];
+                // Of a shorter step; creep changes no volumes.
+                const SymmetricTensor<2, 3> of_step =
+                  e[q] - (1. - law.share) * deviator(e[q]);
+                if (dilates)
+                  {
+                    product -= dilatation[q] / 3. * trace(dual.stress[i]) +
+                               of_step * dual.of_dilatation[i] / law.share;
+                    if (n_samples > 1 && !z.empty())
+                      product -= trace(z[c * n_samples + s]) *
+                                 dual.dilatation[i] / law.share;
+                  }
+                if (law.remainder)
+                  product -= law.remainder(c, s, -1. * of_step) *
+                             dual.strain[i] / law.share;
+                products[c] += weights[q] * product;
+              }
+          }
+      }
+    return local.by_active_index(products);
+  }
+
+
+
+  VISCOPLASTIC_INSTANTIATE_MEMBER(RecoveryEstimator, multiply);
+} // namespace Viscoplastic

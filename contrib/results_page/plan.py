@@ -99,7 +99,7 @@ DIAGRAMS = {
         {
             "Geometry/Arguments": "3, 3, 3 : 0, 0, 0 : 1, 1, 1 : true",
             "Time/Phases": "0.5: 2, 1.5: 4",
-            "Error control/Tolerance": "0.06",
+            "Error control/Tolerance": "0.08",
             "Study/Levels": "3",
             "Study/Budget": "700",
             **EVERY_WAY,

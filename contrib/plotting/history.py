@@ -266,7 +266,7 @@ def factor_of(kind, factors, dimension):
 def draw(results, options):
     others = [Results(directory) for directory in options.overlay]
     # Columns that are joined by + share a panel.
-    named = (by_numbers(group, results.names) for group in options.columns or [])
+    named = (by_numbers(group, results) for group in options.columns or [])
     groups = [derived.split(group, "+") for group in named]
     for run in (results, *others):
         dimension = Units.of(run).dimension

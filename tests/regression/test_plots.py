@@ -743,18 +743,28 @@ class Numbers(TestCase):
                 derived.add(results, text, 3)
 
     def test_columns_of_named_places(self):
-        names = {"boundary 3": "roof", "boundary 4": "roof (left)", "point 10": "crown"}
+        results = SimpleNamespace(
+            names={
+                "boundary 3": "roof",
+                "boundary 4": "roof (left)",
+                "boundary 5": "hall",
+                "point 10": "crown",
+            },
+            statistics={"contact_force_4_x": None},
+            parameters={(f"Boundary {n}", "Role"): "contact" for n in (3, 4)},
+        )
         for text, expected in (
-            ("reaction_y of roof", "reaction_3_y"),
+            ("reaction_y of hall", "reaction_5_y"),
             (
-                "contact_force_x of roof (left)/reaction_x of roof",
-                "contact_force_4_x/reaction_3_x",
+                "contact_force_x of roof (left)/reaction_x of hall",
+                "contact_force_4_x/reaction_5_x",
             ),
             ("displacement_y of crown+point1_y", "point10_y+point1_y"),
             ("stress_xx of crown", "point10_stress_xx"),
+            ("friction_force_x of roof", "friction_force_x"),  # the only one
             ("reaction_y of roofing", "reaction_y of roofing"),
         ):
-            self.assertEqual(by_numbers(text, names), expected)
+            self.assertEqual(by_numbers(text, results), expected)
 
     def test_another_run_is_drawn_in_the_units_of_this_one(self):
         t, force = np.array([0.0, 1.0, 2.0]), np.array([0.0, 1.0, 3.0])

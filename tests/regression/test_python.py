@@ -100,6 +100,9 @@ class Runs(TestCase):
         )
         self.assertIn("displacement_x of corner", self.results)
         self.assertEqual(self.results.names["boundary 2"], "floor")
+        np.testing.assert_array_equal(
+            self.results["friction_force_x of floor"], self.results["friction_force_x"]
+        )
         with self.assertRaisesRegex(UserError, "places are floor, corner"):
             self.results["displacement_x of edge"]
 

@@ -221,16 +221,24 @@ def read_parameters(path):
     return entries
 
 
-def by_numbers(text, names):
+def by_numbers(text, results):
     """Columns as a scene names their places, "reaction_y of roof" and "stress_xx of
-    crown", as statistics.csv does: reaction_3_y, point0_stress_xx."""
+    crown", as statistics.csv does: reaction_3_y, point0_stress_xx. Forces of the only
+    boundary in contact have no number there."""
+
+    def force(match):
+        numbered = f"{match[1]}_{number}_{match[2]}"
+        is_contact = results.parameters.get((f"Boundary {number}", "Role")) == "contact"
+        is_only = is_contact and numbered not in results.statistics
+        return f"{match[1]}_{match[2]}" if is_only else numbered
+
     # Longer names first: they may contain others.
-    for place, name in sorted(names.items(), key=lambda item: -len(item[1])):
+    for place, name in sorted(results.names.items(), key=lambda item: -len(item[1])):
         kind, number = place.rsplit(" ", 1)
         of = rf" of {re.escape(name)}(?!\w)"
         if kind == "boundary":
             forces = r"\b(reaction|friction_force|contact_force)_([xyz])"
-            text = re.sub(forces + of, rf"\1_{number}_\2", text)
+            text = re.sub(forces + of, force, text)
         elif kind == "point":
             text = re.sub(rf"\b(?:displacement_)?(\w+){of}", rf"point{number}_\1", text)
     return text
@@ -267,7 +275,7 @@ class Results:
         return self.column(name)
 
     def __contains__(self, name):
-        return by_numbers(name, self.names) in self.statistics
+        return by_numbers(name, self) in self.statistics
 
     @property
     def parameters(self):
@@ -416,7 +424,7 @@ class Results:
         return self.parameters.get(("Geometry", "Plane model")) == "axisymmetric"
 
     def column(self, name):
-        column = by_numbers(name, self.names)
+        column = by_numbers(name, self)
         if column not in self.statistics:
             places = f"; places are {', '.join(self.names.values())}" if self.names else ""
             raise UserError(

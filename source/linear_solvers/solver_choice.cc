@@ -194,12 +194,11 @@ namespace Viscoplastic
     const double     n_meshes = std::max(1.,
                                      n_steps * demand.solves_per_step /
                                        std::max(demand.n_solves, 1u));
-    const double     talk     = n_ranks == 1 ?
-                                  0. :
-                                  n_iterations * latency *
-                            (n_messages + n_reductions * std::log2(n_ranks));
+    const double     n_waits =
+      n_ranks == 1 ? 0. : n_messages + n_reductions * std::log2(n_ranks);
     return (n_meshes * cost.set_up + n_steps * cost.step) / n_ranks +
-           n_steps * talk;
+           n_steps * latency * n_waits * n_iterations *
+             growth_by_incompressibility(demand.max_poissons_ratio);
   }
 
 

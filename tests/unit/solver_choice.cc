@@ -152,6 +152,10 @@ namespace
     // (2.3 + 0.001 + 100 (0.37 + 0.0025)) / 4 + 100 17e-6 (50 + 34 log2(4))
     EXPECT_NEAR(expected_seconds(steady(3, 110000), 100., 4), 10.08835, 1e-10);
     EXPECT_NEAR(expected_seconds(steady(3, 110000), 100., 1), 39.551, 1e-10);
+    // 0.35 (1 - 2 nu)^(-1/2) = 24.75 times the iterations.
+    SolverDemand rubber       = steady(3, 110000);
+    rubber.max_poissons_ratio = 0.4999;
+    EXPECT_NEAR(expected_seconds(rubber, 100., 4), 234.528, 1e-3);
     // A new mesh every fifth step: 20 of them.
     SolverDemand often    = steady(3, 110000);
     often.n_solves        = 10;

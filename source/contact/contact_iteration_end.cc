@@ -21,6 +21,9 @@ namespace Viscoplastic
     /// preconditioner is below the tolerance by any: that takes one whose
     /// condition number is less than 1e6.
     constexpr double beyond_doubt = 1e-3;
+    /// An error that is so many times its tolerance on the truncated space is
+    /// above it.
+    constexpr double by_far = 10.;
     /// Estimates found too low are not taken for more than so many times too
     /// low: others will be less so.
     constexpr double largest_misjudgment = 10.;
@@ -73,8 +76,19 @@ namespace Viscoplastic
     const Certificate certificate = certify(
       face, residual, diagonal, state, force, bulk.scale.rounding_error);
     size = std::max(bulk.size(), bulk.scale.rounding_error / tolerance);
-    const double estimate = bulk.dual_norm(certificate.force);
-    error                 = bound(misjudged * estimate, certificate);
+    double estimate = 0.;
+    error           = 0.;
+    // As a rule it is not solved by far.
+    if (!bounds && !bulk.is_exact && !face.any(!certificate.replaced.empty()))
+      {
+        estimate = bulk.truncated_dual_norm(force);
+        error    = bound(misjudged * estimate, certificate);
+      }
+    if (!(error > by_far * tolerance * size))
+      {
+        estimate = bulk.dual_norm(certificate.force);
+        error    = bound(misjudged * estimate, certificate);
+      }
     if (error <= tolerance * size && error > beyond_doubt * tolerance * size)
       {
         // Above this, the bound is above the tolerance.

@@ -23,7 +23,8 @@ namespace Viscoplastic
                    const typename FlowLaws<dim>::AtTime &now,
                    const State<dim>                     &old_state,
                    const State<dim>                     &state,
-                   const std::size_t                     c)
+                   const std::size_t                     c,
+                   const bool                            without_strain)
   {
     const StressSpace<dim> &stress_space = laws.stress_space;
     const unsigned int      n            = stress_space.n_samples;
@@ -33,8 +34,7 @@ namespace Viscoplastic
     std::array<SymmetricTensor<2, 3>, GeometryInfo<dim>::vertices_per_cell>
                  strain, old_strain;
     CellEnergies result;
-    stress_space.strains(c, state.u.begin(), strain.data());
-    result.mean_strain = stress_space.mean(c, strain.data());
+    result.mean_strain = stress_space.mean_strain(c, state.u.begin());
     result.mean_stress = stiffness.stress(result.mean_strain);
     if (state.z.empty())
       return result;
@@ -43,8 +43,11 @@ namespace Viscoplastic
     const bool flows = law || laws.source_solution;
     const bool is_heated =
       laws.thermal && laws.thermal->expands && laws.thermal->varies_in_time;
-    if (flows || is_heated)
-      stress_space.strains(c, old_state.u.begin(), old_strain.data());
+    if ((flows || is_heated) && !without_strain)
+      {
+        stress_space.strains(c, state.u.begin(), strain.data());
+        stress_space.strains(c, old_state.u.begin(), old_strain.data());
+      }
     for (unsigned int s = 0; s < n; ++s)
       {
         const SymmetricTensor<2, 3> &z      = state.z[c * n + s];
@@ -54,9 +57,16 @@ namespace Viscoplastic
         if (!flows && !is_heated)
           continue;
         const SymmetricTensor<2, 3> &old_z = old_state.z[c * n + s];
-        const double                 growth =
+        if (without_strain)
+          {
+            result.viscous_dissipation -=
+              0.5 * weight *
+              stiffness.complementary_product(z - old_z, old_z + z);
+            continue;
+          }
+        const double growth =
           is_heated ? now.thermal_strain(c, s) - before.thermal_strain(c, s) :
-                                      0.;
+                      0.;
         if (growth != 0.)
           result.thermal_work -=
             0.5 * weight * growth *
@@ -121,11 +131,16 @@ namespace Viscoplastic
   StressSummary<dim>
   summarize_stress(const FlowLaws<dim> &laws,
                    const State<dim>    &old_state,
-                   const State<dim>    &state)
+                   const State<dim>    &state,
+                   const double        *work_on_strain)
   {
     const StressSpace<dim> &stress_space = laws.stress_space;
-    const auto              before = laws.at(old_state.t, old_state.history),
-               now                 = laws.at(state.t, state.history);
+    // Stresses of the mean strain are driving forces of most laws.
+    if (laws.any_own_energy ||
+        (laws.thermal && laws.thermal->expands && laws.thermal->varies_in_time))
+      work_on_strain = nullptr;
+    const auto before = laws.at(old_state.t, old_state.history),
+               now    = laws.at(state.t, state.history);
     StressSummary<dim> result;
     LargestPlace<dim>  largest_mises;
     double             volume = 0., strains = 0.;
@@ -134,8 +149,8 @@ namespace Viscoplastic
         const auto &cell = stress_space.space.cells[c];
         if (!stress_space.space.scene.is_present(cell->material_id()))
           continue;
-        const CellEnergies energies =
-          energies_of_cell(laws, before, now, old_state, state, c);
+        const CellEnergies energies = energies_of_cell(
+          laws, before, now, old_state, state, c, work_on_strain != nullptr);
         const SymmetricTensor<2, 3> &mean = energies.mean_stress;
         result.irreversible_energy += energies.irreversible_energy;
         result.viscous_dissipation += energies.viscous_dissipation;
@@ -168,9 +183,10 @@ namespace Viscoplastic
     result.mean_von_mises      = sums[0] / sums[4];
     result.stress_norm         = std::sqrt(sums[1]);
     result.irreversible_energy = sums[2];
-    result.viscous_dissipation = sums[3];
-    result.thermal_work        = sums[5];
-    result.mean_strain         = sums[6] > 0. ? sums[7] / sums[6] : 0.;
+    result.viscous_dissipation =
+      sums[3] - (work_on_strain != nullptr ? *work_on_strain : 0.);
+    result.thermal_work = sums[5];
+    result.mean_strain  = sums[6] > 0. ? sums[7] / sums[6] : 0.;
     return result;
   }
 

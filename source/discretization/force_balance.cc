@@ -53,18 +53,17 @@ namespace Viscoplastic
                   const State<dim>        &state)
   {
     const AdmissibleSpace<dim> &space = stress_space.space;
-    Forces<dim>                 forces{
-      space.owned_vector(), std::move(load), space.owned_vector(), {}, 0., 0.};
+    Forces<dim>                 forces;
+    forces.load = std::move(load);
+    forces.u = forces.internal = space.owned_vector();
     space.to_frames(state.u, forces.u);
-    matrix.vmult(forces.elastic, forces.u);
-    forces.internal      = forces.elastic;
-    forces.strain_energy = 0.5 * (forces.u * forces.elastic);
+    matrix.vmult(forces.internal, forces.u);
+    forces.strain_energy = 0.5 * (forces.u * forces.internal);
     if (space.scene.has_irreversible_stress()) // collective
       {
-        DistributedVector irreversible = space.owned_vector();
-        add_irreversible_load(stress_space, state.z, irreversible);
-        forces.irreversible_work = -(forces.u * irreversible);
-        forces.internal -= irreversible;
+        forces.irreversible      = irreversible_forces(stress_space, state.z);
+        forces.irreversible_work = forces.u * forces.irreversible;
+        forces.internal += forces.irreversible;
       }
     return forces;
   }
@@ -78,7 +77,7 @@ namespace Viscoplastic
                   const Forces<dim>          &forces)
   {
     const auto          square = [](const double x) { return x * x; };
-    const bool          has_z  = forces.internal.size() > 0; // no dual solution
+    const bool          has_z  = forces.irreversible.size() > 0;
     std::vector<double> sums(2, 0.);
     for (std::size_t i = 0; i < space.owned.n_elements(); ++i)
       {
@@ -86,16 +85,12 @@ namespace Viscoplastic
           matrix.diag_element(space.owned.nth_index_in_set(i));
         if (!(stiffness > 0.))
           continue;
+        const double z = has_z ? forces.irreversible.begin()[i] : 0.;
         sums[0] += stiffness * square(forces.u.begin()[i]);
         if (!space.excluded()[i])
-          {
-            sums[0] += square(forces.load.values.begin()[i]) / stiffness;
-            if (has_z)
-              sums[0] +=
-                square(forces.internal.begin()[i] - forces.elastic.begin()[i]) /
-                stiffness;
-          }
-        sums[1] += square(forces.elastic.begin()[i]) / stiffness;
+          sums[0] +=
+            (square(forces.load.values.begin()[i]) + square(z)) / stiffness;
+        sums[1] += square(forces.internal.begin()[i] - z) / stiffness;
       }
     Utilities::MPI::sum(sums, space.communicator, sums);
     const double size =

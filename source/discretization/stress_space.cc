@@ -3,6 +3,7 @@
 #include <deal.II/fe/fe_dgq.h>
 
 #include <viscoplastic_contact/discretization/stress_space.h>
+#include <viscoplastic_contact/laws/strain.h>
 
 namespace Viscoplastic
 {
@@ -88,35 +89,67 @@ namespace Viscoplastic
 
 
   template <int dim>
+  SymmetricTensor<2, 3>
+  StressSpace<dim>::strain_at(const std::size_t     cell,
+                              const double         *u,
+                              const Tensor<1, dim> *gradient,
+                              const double         *hoop) const
+  {
+    const unsigned int *node = nodes_of_cell(cell);
+    Tensor<2, dim>      sum;
+    double              zz = space.axial_strain(u);
+    for (unsigned int v = 0; v < n_vertices; ++v)
+      for (unsigned int i = 0; i < dim; ++i)
+        for (unsigned int j = 0; j < dim; ++j)
+          sum[i][j] += u[node[v] + i] * gradient[v][j];
+    if (hoop != nullptr)
+      for (unsigned int v = 0; v < n_vertices; ++v)
+        zz += u[node[v]] * hoop[v];
+    return strain(sum, zz);
+  }
+
+
+
+  template <int dim>
+  SymmetricTensor<2, 3>
+  StressSpace<dim>::mean_strain(const std::size_t cell, const double *u) const
+  {
+    // Mean dilatation does not change it.
+    std::array<Tensor<1, dim>, n_vertices> gradient;
+    std::array<double, n_vertices>         hoop{};
+    for (unsigned int s = 0; s < n_samples; ++s)
+      {
+        const std::size_t first = (cell * n_samples + s) * n_vertices;
+        const double      part  = weight(cell, s) / volumes[cell];
+        for (unsigned int v = 0; v < n_vertices; ++v)
+          {
+            gradient[v] += part * gradients[first + v];
+            if (!hoops.empty())
+              hoop[v] += part * hoops[first + v];
+          }
+      }
+    return strain_at(cell,
+                     u,
+                     gradient.data(),
+                     hoops.empty() ? nullptr : hoop.data());
+  }
+
+
+
+  template <int dim>
   void
   StressSpace<dim>::strains(const std::size_t      cell,
                             const double          *u,
                             SymmetricTensor<2, 3> *strain) const
   {
-    const unsigned int *node  = &nodes[cell * n_vertices];
-    const double        axial = space.axial_strain(u);
-    double              mean  = 0., values[n_vertices][dim];
-    for (unsigned int v = 0; v < n_vertices; ++v)
-      for (unsigned int i = 0; i < dim; ++i)
-        values[v][i] = u[node[v] + i];
+    double mean = 0.;
     for (unsigned int s = 0; s < n_samples; ++s)
       {
-        const Tensor<1, dim> *g =
-          &gradients[(cell * n_samples + s) * n_vertices];
-        Tensor<2, dim> gradient;
-        for (unsigned int v = 0; v < n_vertices; ++v)
-          for (unsigned int i = 0; i < dim; ++i)
-            for (unsigned int j = 0; j < dim; ++j)
-              gradient[i][j] += values[v][i] * g[v][j];
-        strain[s]       = 0.;
-        strain[s][2][2] = axial;
-        for (unsigned int i = 0; i < dim; ++i)
-          for (unsigned int j = i; j < dim; ++j)
-            strain[s][i][j] = 0.5 * (gradient[i][j] + gradient[j][i]);
-        if (!hoops.empty())
-          for (unsigned int v = 0; v < n_vertices; ++v)
-            strain[s][2][2] +=
-              values[v][0] * hoops[(cell * n_samples + s) * n_vertices + v];
+        const std::size_t first = (cell * n_samples + s) * n_vertices;
+        strain[s]               = strain_at(cell,
+                              u,
+                              &gradients[first],
+                              hoops.empty() ? nullptr : &hoops[first]);
         mean += trace(strain[s]) * weight(cell, s);
       }
     if (mean_dilatation && n_samples > 1)
@@ -283,14 +316,31 @@ namespace Viscoplastic
                                 const IrreversibleStress &z) const
   {
     std::vector<SymmetricTensor<2, 3>> result(n_cells());
-    std::vector<SymmetricTensor<2, 3>> strain(n_samples);
     for (std::size_t c = 0; c < n_cells(); ++c)
       {
-        strains(c, ghosted_u.begin(), strain.data());
-        result[c] = moduli(c).stress(mean(c, strain.data()));
+        result[c] = moduli(c).stress(mean_strain(c, ghosted_u.begin()));
         if (!z.empty())
           result[c] += mean(c, &z[c * n_samples]);
       }
+    return result;
+  }
+
+
+
+  template <int dim>
+  DistributedVector
+  irreversible_forces(const StressSpace<dim>   &stress_space,
+                      const IrreversibleStress &z)
+  {
+    const AdmissibleSpace<dim> &space = stress_space.space;
+    std::vector<double>         cartesian(space.relevant.n_elements());
+    for (std::size_t c = 0; c < stress_space.n_cells(); ++c)
+      stress_space.add_virtual_work(c,
+                                    &z[c * stress_space.n_samples],
+                                    1.,
+                                    cartesian.data());
+    DistributedVector result = space.owned_vector();
+    space.add_cartesian_load(cartesian, result);
     return result;
   }
 
@@ -302,17 +352,12 @@ namespace Viscoplastic
                         const IrreversibleStress &z,
                         DistributedVector        &load)
   {
-    std::vector<double> cartesian(stress_space.space.relevant.n_elements());
-    for (std::size_t c = 0; c < stress_space.n_cells(); ++c)
-      stress_space.add_virtual_work(c,
-                                    &z[c * stress_space.n_samples],
-                                    -1.,
-                                    cartesian.data());
-    stress_space.space.add_cartesian_load(cartesian, load);
+    load -= irreversible_forces(stress_space, z);
   }
 
 
 
   VISCOPLASTIC_INSTANTIATE_CLASS(StressSpace);
+  VISCOPLASTIC_INSTANTIATE(irreversible_forces);
   VISCOPLASTIC_INSTANTIATE(add_irreversible_load);
 } // namespace Viscoplastic

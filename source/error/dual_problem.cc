@@ -457,7 +457,7 @@ namespace Viscoplastic
     Forces<dim> forces;
     forces.u           = result.w;
     forces.load.values = load;
-    forces.elastic     = result.w;
+    forces.internal    = result.w;
     const SolutionScale scale{
       energy_rounding(discretization.space, matrix, forces).size};
     const bool is_zero = load.l2_norm() == 0. && result.w.l2_norm() == 0.;
@@ -523,7 +523,7 @@ namespace Viscoplastic
     forces.u = prescribed();
     forces.u += dual.w;
     forces.load.values = load;
-    forces.elastic     = elastic;
+    forces.internal    = elastic;
     if (energy_rounding(space, matrix, forces).is_all_of_the_strain)
       dual.norm = 0.;
     dual.cartesian = space.ghosted_vector();

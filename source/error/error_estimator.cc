@@ -183,9 +183,9 @@ namespace Viscoplastic
     // |d/k - v|^2 = a(d, d)/k^2 - 2 a(d, v)/k + a(v, v).
     const double      k = end.state.k;
     DistributedVector change(forces.u), velocity(forces.u),
-      elastic(forces.elastic);
+      elastic(forces.elastic());
     change -= accepted.forces.u;
-    elastic -= accepted.forces.elastic;
+    elastic -= accepted.forces.elastic();
     space.to_frames(accepted.state.velocity, velocity);
     estimate.velocity_square = (elastic * change) / (k * k);
     const double jump        = estimate.velocity_square -

@@ -11,10 +11,13 @@
 #include <Epetra_CrsMatrix.h>
 #include <Epetra_Import.h>
 #include <Epetra_IntVector.h>
+#include <Epetra_Vector.h>
 
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <sstream>
+#include <utility>
 
 namespace Viscoplastic
 {
@@ -41,11 +44,9 @@ namespace Viscoplastic
                  solver.matrix.get_mpi_communicator())
       , w(residual)
       , product(residual)
+      , first(residual)
     {
-      solver.matrix.vmult(residual, u);
-      squared_norm = u * residual;
-      residual.sadd(-1., 1., load);
-      restrict_to_unknowns(residual);
+      compute_residual();
     }
 
     Vector<double>
@@ -61,7 +62,7 @@ namespace Viscoplastic
         return;
       w = 0.;
       solver.restriction.set(change, w);
-      solver.matrix.vmult(product, w);
+      solver.multiply_face(change, product);
       take_step(1.);
     }
 
@@ -69,6 +70,7 @@ namespace Viscoplastic
     set_truncation(const FaceTruncation &truncation_,
                    const bool            may_rebuild) override
     {
+      first_is_truncated.reset();
       truncation  = truncation_;
       has_springs = truncation.has_springs(solver.face);
       solver.preconditioner->set_truncation(truncation, may_rebuild);
@@ -77,13 +79,20 @@ namespace Viscoplastic
     double
     dual_norm(const Vector<double> &force) override
     {
+      if (is_approximate)
+        compute_residual();
       // Not filtered by the truncation: the residual on sticking components, if
       // any, is an error, too.
       product = residual;
       solver.restriction.add(-1., force, product);
-      solver.preconditioner->vmult_untruncated(w, product);
-      restrict_to_unknowns(w);
-      return std::sqrt(std::max(0., w * product));
+      return norm_by_preconditioner(false);
+    }
+
+    double
+    truncated_dual_norm(const Vector<double> &force) override
+    {
+      set_right_side(force);
+      return norm_by_preconditioner(true);
     }
 
     double
@@ -103,6 +112,7 @@ namespace Viscoplastic
         solver.matrix, load, u, [&](const DistributedVector &error) {
           product = error;
           restrict_to_unknowns(product);
+          first_is_truncated.reset();
           unsigned int iterations = 0;
           return Utilities::fixed_power<2>(
             dual_norm_of_product(std::numeric_limits<double>::infinity(),
@@ -126,15 +136,22 @@ namespace Viscoplastic
     search_terms(const Vector<double> &face_part) override
     {
       solver.restriction.set(face_part, w);
-      solver.matrix.vmult(product, w);
+      // Ten digits do on the way: dual_norm() looks at the matrix itself.
+      if (solver.preconditioner->vmult_matrix(product, w))
+        is_approximate = true;
+      else
+        solver.matrix.vmult(product, w);
       return {residual * w, product * w, solver.restriction.gather(product)};
     }
 
     void
     take_step(const double step) override
     {
-      // K w = product, all rows of it; w is zero on excluded components.
-      squared_norm += step * (2. * (u * product) + step * (w * product));
+      first_is_truncated.reset();
+      // K w = product and K u = load - residual but for excluded components,
+      // where w is zero.
+      squared_norm +=
+        step * (2. * (w * load - w * residual) + step * (w * product));
       u.add(step, w);
       restrict_to_unknowns(product);
       residual.add(-step, product);
@@ -153,6 +170,32 @@ namespace Viscoplastic
         entry[i] = 0.;
     }
 
+    /// The residual and the norm of u by the matrix itself.
+    void
+    compute_residual()
+    {
+      solver.matrix.vmult(residual, u);
+      squared_norm = u * residual;
+      residual.sadd(-1., 1., load);
+      restrict_to_unknowns(residual);
+      is_approximate = false;
+      first_is_truncated.reset();
+    }
+
+    /// What correct() solves for, in product.
+    void
+    set_right_side(const Vector<double> &force)
+    {
+      product = residual;
+      solver.restriction.add(-1., force, product);
+      solver.restriction.tilt_equations(truncation, product);
+      solver.restriction.project(truncation, product);
+    }
+
+    /// The root of product . M^-1 product.
+    double
+    norm_by_preconditioner(const bool is_truncated);
+
     /// The dual norm of the vector in product, without the quality of the
     /// preconditioner in it, or some lower bound above @p limit.
     double
@@ -162,9 +205,15 @@ namespace Viscoplastic
     const DistributedVector &load;
     DistributedVector       &u;
     DistributedVector        residual, w, product;
-    FaceTruncation           truncation;
-    bool                     has_springs  = false;
-    double                   squared_norm = 0.;
+    /// What the preconditioner, with truncation or without, has made of
+    /// product, with which conjugate gradients begin; and whether products of
+    /// shared rows are in the residual.
+    DistributedVector   first;
+    std::optional<bool> first_is_truncated;
+    bool                is_approximate = false;
+    FaceTruncation      truncation;
+    bool                has_springs  = false;
+    double              squared_norm = 0.;
   };
 
 
@@ -212,13 +261,19 @@ namespace Viscoplastic
   /// P M^{-1} P, likewise.
   struct KrylovSolver::Solve::Inverse
   {
-    const Solve &solve;
-    const bool   is_truncated;
-    const bool   is_whole = false;
+    Solve     &solve;
+    const bool is_truncated;
+    const bool is_whole = false;
 
     void
     vmult(DistributedVector &y, const DistributedVector &x) const
     {
+      if (std::exchange(solve.first_is_truncated, {}) == is_truncated)
+        {
+          // It is linear, and x that vector or a multiple of it.
+          y.equ((x * solve.product) / solve.product.norm_sqr(), solve.first);
+          return;
+        }
       if (is_whole)
         solve.solver.preconditioner->vmult_whole(y, x);
       else if (is_truncated)
@@ -233,15 +288,23 @@ namespace Viscoplastic
 
 
 
+  double
+  KrylovSolver::Solve::norm_by_preconditioner(const bool is_truncated)
+  {
+    first_is_truncated.reset();
+    Inverse{*this, is_truncated}.vmult(first, product);
+    first_is_truncated = is_truncated;
+    return std::sqrt(std::max(0., first * product));
+  }
+
+
+
   unsigned int
   KrylovSolver::Solve::correct(const Vector<double> &force,
                                const double          tolerance,
                                Vector<double>       &face_part)
   {
-    product = residual;
-    solver.restriction.add(-1., force, product);
-    solver.restriction.tilt_equations(truncation, product);
-    solver.restriction.project(truncation, product);
+    set_right_side(force);
     w                 = 0.;
     const double size = product.l2_norm();
     face_part         = 0.;
@@ -416,6 +479,35 @@ namespace Viscoplastic
 
 
 
+  void
+  KrylovSolver::multiply_face(const Vector<double> &x,
+                              DistributedVector    &y) const
+  {
+    // The rows of the face are its columns.
+    const Epetra_CrsMatrix      &K = matrix.trilinos_matrix();
+    std::optional<Epetra_Vector> on_columns;
+    if (K.Importer() != nullptr)
+      on_columns.emplace(K.ColMap());
+    y                = 0.;
+    double *const to = on_columns ? on_columns->Values() : y.begin();
+    for (unsigned int k = 0; k < x.size(); ++k)
+      if (x[k] != 0.)
+        {
+          int     length, *indices;
+          double *values;
+          K.ExtractMyRowView(restriction.positions()[k],
+                             length,
+                             values,
+                             indices);
+          for (int e = 0; e < length; ++e)
+            to[indices[e]] += x[k] * values[e];
+        }
+    if (on_columns)
+      y.trilinos_vector().Export(*on_columns, *K.Importer(), Add);
+  }
+
+
+
   std::string
   KrylovSolver::name() const
   {
@@ -478,7 +570,8 @@ namespace Viscoplastic
     Vector<double>       face_part(face.n_dofs());
     for (unsigned int pass = 0; pass < 20; ++pass)
       {
-        const double error = solve.dual_norm(no_force);
+        const double error = pass == 0 ? solve.truncated_dual_norm(no_force) :
+                                         solve.dual_norm(no_force);
         // The first solution sets the scale of a start from zero.
         const double size = solve.size();
         const double left = std::max(tolerance * size, scale.rounding_error);

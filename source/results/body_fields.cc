@@ -212,10 +212,8 @@ namespace Viscoplastic
     std::vector<double> result;
     if (cell_fields.empty())
       return result;
-    std::vector<SymmetricTensor<2, 3>> samples(stress_space.n_samples);
-    stress_space.strains(cell, state.u.begin(), samples.data());
     const SymmetricTensor<2, 3> strain =
-      stress_space.mean(cell, samples.data());
+      stress_space.mean_strain(cell, state.u.begin());
     SymmetricTensor<2, 3> z;
     if (!state.z.empty())
       z = stress_space.mean(cell, &state.z[cell * stress_space.n_samples]);
@@ -238,8 +236,7 @@ namespace Viscoplastic
                         result);
             break;
           case RecordedField::total_strain:
-            stress_space.strains(cell, u.begin(), samples.data());
-            append<dim>(stress_space.mean(cell, samples.data()), result);
+            append<dim>(stress_space.mean_strain(cell, u.begin()), result);
             break;
           case RecordedField::irreversible_strain:
             // eps(u) - E^-1 sigma - alpha (T - T_0) I

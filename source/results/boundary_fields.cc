@@ -201,10 +201,8 @@ namespace Viscoplastic
   BoundaryFields<dim>::stress_vector(const std::size_t     c,
                                      const Tensor<1, dim> &normal) const
   {
-    std::vector<SymmetricTensor<2, 3>> samples(stress_space.n_samples);
-    stress_space.strains(c, state.u.begin(), samples.data());
-    SymmetricTensor<2, 3> stress =
-      stress_space.moduli(c).stress(stress_space.mean(c, samples.data()));
+    SymmetricTensor<2, 3> stress = stress_space.moduli(c).stress(
+      stress_space.mean_strain(c, state.u.begin()));
     if (!state.z.empty())
       stress += stress_space.mean(c, &state.z[c * stress_space.n_samples]);
     Tensor<1, dim> result;

@@ -389,16 +389,12 @@ namespace Viscoplastic
       for (const auto &face : cell->face_iterators())
         if (face->at_boundary())
           {
-            DataOutBase::Patch<dim - 1, dim> patch;
-            patch.patch_index    = output.patches.size();
-            patch.reference_cell = ReferenceCells::get_hypercube<dim - 1>();
-            patch.data.reinit(1, face->n_vertices());
+            auto &patch = output.add_patch();
             for (const unsigned int v : face->vertex_indices())
               {
                 patch.vertices[v] = face->vertex(v);
                 patch.data(0, v)  = face->boundary_id();
               }
-            output.patches.push_back(patch);
           }
     write_vtu("boundary", std::move(output), /* is_series = */ false);
   }
@@ -494,28 +490,14 @@ namespace Viscoplastic
       BoundaryFields<dim>::of_output(scene, face);
     const BoundaryFields<dim> boundary(stress_space, state, face, fields);
     PatchOutput<dim - 1, dim> output;
-    const auto                add_scalar = [&](const std::string &name) {
-      output.names.push_back(name + label_of_field(scene, name));
-    };
-    const auto add_vector = [&](const std::string &field) {
-      const std::string name = field + label_of_field(scene, field);
-      output.vectors.emplace_back(
-        output.names.size(),
-        output.names.size() + dim - 1,
-        name,
-        DataComponentInterpretation::component_is_part_of_vector);
-      output.names.insert(output.names.end(), dim, name);
-    };
-    DistributedVector        difference;
-    const DistributedVector &reported =
+    DistributedVector         difference;
+    const DistributedVector  &reported =
       reported_displacement(scene, state, difference);
-    add_vector("displacement");
+    output.add_field(scene, "displacement", true);
     for (const RecordedField field : fields)
-      if (const std::string name = BoundaryFields<dim>::name(field);
-          BoundaryFields<dim>::is_vector(field))
-        add_vector(name);
-      else
-        add_scalar(name);
+      output.add_field(scene,
+                       BoundaryFields<dim>::name(field),
+                       BoundaryFields<dim>::is_vector(field));
 
     for (std::size_t c = 0; c < space.cells.size(); ++c)
       for (const unsigned int f : space.cells[c]->face_indices())
@@ -533,10 +515,7 @@ namespace Viscoplastic
                 !is_other :
                 space.scene.boundary.at(id).role != BoundaryRole::contact)
             continue;
-          DataOutBase::Patch<dim - 1, dim> patch;
-          patch.patch_index    = output.patches.size();
-          patch.reference_cell = ReferenceCells::get_hypercube<dim - 1>();
-          patch.data.reinit(output.names.size(), cell_face->n_vertices());
+          auto &patch = output.add_patch();
           for (unsigned int i = 0; i < cell_face->n_vertices(); ++i)
             {
               const unsigned int v =
@@ -551,7 +530,6 @@ namespace Viscoplastic
               for (const double value : boundary.values(c, f, v, normal))
                 patch.data(row++, i) = value;
             }
-          output.patches.push_back(patch);
         }
     return write_vtu(name, std::move(output));
   }

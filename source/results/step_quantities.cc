@@ -13,24 +13,28 @@ namespace Viscoplastic
     /// ghosts.
     template <int dim>
     LargestPlace<dim>
-    largest_displacement(const AdmissibleSpace<dim> &space,
-                         const DistributedVector    &u)
+    largest_displacement(const StressSpace<dim>  &stress_space,
+                         const DistributedVector &u)
     {
-      LargestPlace<dim> result;
-      for (const auto &cell : space.cells)
-        for (const unsigned int v : cell->vertex_indices())
-          {
-            if (!space.scene.is_present(cell->material_id()))
-              break;
-            const double *values = u.begin() + space.relevant.index_within_set(
-                                                 cell->vertex_dof_index(v, 0));
-            Tensor<1, dim> at_node;
-            for (unsigned int d = 0; d < dim; ++d)
-              at_node[d] = values[d];
-            const double length = stable_norm(at_node);
-            if (result.may_take(length))
-              result.add(length, cell->vertex(v));
-          }
+      const AdmissibleSpace<dim> &space = stress_space.space;
+      LargestPlace<dim>           result;
+      for (std::size_t c = 0; c < space.cells.size(); ++c)
+        {
+          const auto &cell = space.cells[c];
+          if (!space.scene.is_present(cell->material_id()))
+            continue;
+          const unsigned int *const nodes = stress_space.nodes_of_cell(c);
+          for (unsigned int v = 0; v < GeometryInfo<dim>::vertices_per_cell;
+               ++v)
+            {
+              Tensor<1, dim> at_node;
+              for (unsigned int d = 0; d < dim; ++d)
+                at_node[d] = u.begin()[nodes[v] + d];
+              const double length = stable_norm(at_node);
+              if (result.may_take(length))
+                result.add(length, cell->vertex(v));
+            }
+        }
       result.reduce(space.communicator);
       return result;
     }
@@ -93,10 +97,8 @@ namespace Viscoplastic
                     StepQuantities<dim>       &result)
     {
       const Forces<dim> &forces = end.forces;
-      DistributedVector  irreversible(forces.internal);
-      irreversible -= forces.elastic;
       if (const double cancels =
-            forces.elastic.l1_norm() + irreversible.l1_norm();
+            forces.elastic().l1_norm() + forces.irreversible.l1_norm();
           result.largest_force <= 1e-6 * cancels)
         result.force_scale = cancels;
       DistributedVector moves(forces.u);
@@ -125,13 +127,21 @@ namespace Viscoplastic
     const Forces<dim>  &forces     = step.end.forces;
     const bool          is_initial = step.time_step.n == 0;
     StepQuantities<dim> result;
-    result.stress = summarize_stress(d.laws, old.state, state);
+    if (!is_initial && forces.irreversible.size() > 0)
+      {
+        DistributedVector flow(forces.irreversible);
+        flow -= old.forces.irreversible;
+        const double work = 0.5 * (flow * old.forces.u + flow * forces.u);
+        result.stress     = summarize_stress(d.laws, old.state, state, &work);
+      }
+    else
+      result.stress = summarize_stress(d.laws, old.state, state);
     result.stored_energy =
       stored_energy(forces, result.stress) + energy_of_foundation(d, state);
     DistributedVector        difference;
     const DistributedVector &u =
       reported_displacement(d.scene(), state, difference);
-    const LargestPlace<dim> largest = largest_displacement(d.space, u);
+    const LargestPlace<dim> largest = largest_displacement(d.stress_space, u);
     result.axial_strain             = d.space.axial_strain(u.begin());
     if (d.space.axial)
       result.axial_force = axial_force(d.space, forces);

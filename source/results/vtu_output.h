@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
-#include <deal.II/numerics/data_out.h>
+#include <deal.II/base/data_out_base.h>
 
 #include <viscoplastic_contact/discretization/admissible_space.h>
 #include <viscoplastic_contact/results/unit_labels.h>
@@ -16,7 +16,7 @@
 #include <utility>
 #include <vector>
 
-// What Output writes as VTU: the body by DataOut, and faces of its boundary.
+// What Output writes as VTU: the body, and faces of its boundary.
 
 namespace Viscoplastic
 {
@@ -115,6 +115,33 @@ namespace Viscoplastic
     std::vector<std::string>                        names;
     std::vector<VectorRange>                        vectors;
 
+    void
+    add_field(const Scene<dim>  &scene,
+              const std::string &field,
+              const bool         is_vector)
+    {
+      const std::string name = field + label_of_field(scene, field);
+      if (is_vector)
+        vectors.emplace_back(
+          names.size(),
+          names.size() + dim - 1,
+          name,
+          DataComponentInterpretation::component_is_part_of_vector);
+      names.insert(names.end(), is_vector ? dim : 1, name);
+    }
+
+    /// A patch for all fields.
+    DataOutBase::Patch<patch_dim, dim> &
+    add_patch()
+    {
+      auto &patch          = patches.emplace_back();
+      patch.patch_index    = patches.size() - 1;
+      patch.reference_cell = ReferenceCells::get_hypercube<patch_dim>();
+      patch.data.reinit(names.size(),
+                        GeometryInfo<patch_dim>::vertices_per_cell);
+      return patch;
+    }
+
   protected:
     const std::vector<DataOutBase::Patch<patch_dim, dim>> &
     get_patches() const override
@@ -144,52 +171,27 @@ namespace Viscoplastic
   PatchOutput<dim, dim>
   make_patches(const Scene<dim> &scene, const BodyData<dim> &body)
   {
-    struct : DataOut<dim>
-    {
-      using DataOut<dim>::patches, DataOut<dim>::get_dataset_names,
-        DataOut<dim>::get_nonscalar_data_ranges;
-    } data_out;
-    data_out.attach_dof_handler(body.space.dof_handler);
-    for (const auto &[name, field] : body.vectors)
-      data_out.add_data_vector(
-        *field,
-        std::vector<std::string>(dim, name),
-        DataOut<dim>::type_dof_data,
-        std::vector(dim,
-                    DataComponentInterpretation::component_is_part_of_vector));
-    for (const auto &[name, means] : body.means)
-      data_out.add_data_vector(means, name);
-    if (scene.has_stages())
-      data_out.set_cell_selection([&scene](const auto &cell) {
-        return cell->is_active() && cell->is_locally_owned() &&
-               scene.is_present(cell->material_id());
-      });
-    data_out.build_patches();
-
     PatchOutput<dim, dim> result;
-    result.names   = data_out.get_dataset_names();
-    result.vectors = data_out.get_nonscalar_data_ranges();
-    for (std::string &name : result.names)
-      name += label_of_field(scene, name);
-    for (VectorRange &range : result.vectors)
-      std::get<2>(range) += label_of_field(scene, std::get<2>(range));
-
-    // DataOut's are in the order of active cells.
-    std::vector<std::pair<unsigned int, std::size_t>> order;
+    for (const auto &field : body.vectors)
+      result.add_field(scene, field.first, true);
+    for (const auto &field : body.means)
+      result.add_field(scene, field.first, false);
+    result.patches.reserve(body.cells.size());
     for (const auto &cell : body.cells)
-      order.emplace_back(cell->active_cell_index(), order.size());
-    AssertDimension(data_out.patches.size(), order.size());
-    std::sort(order.begin(), order.end());
-    result.patches.resize(order.size());
-    for (std::size_t p = 0; p < order.size(); ++p)
       {
-        auto &patch       = result.patches[order[p].second];
-        patch             = std::move(data_out.patches[p]);
-        patch.patch_index = order[p].second;
-        // Their numbers are no longer right, and nothing here asks for them.
-        std::fill(std::begin(patch.neighbors),
-                  std::end(patch.neighbors),
-                  numbers::invalid_unsigned_int);
+        auto &patch = result.add_patch();
+        for (const unsigned int v : cell->vertex_indices())
+          {
+            patch.vertices[v]       = cell->vertex(v);
+            const std::size_t first = body.space.relevant.index_within_set(
+              cell->vertex_dof_index(v, 0));
+            unsigned int row = 0;
+            for (const auto &[name, field] : body.vectors)
+              for (unsigned int d = 0; d < dim; ++d)
+                patch.data(row++, v) = field->begin()[first + d];
+            for (const auto &[name, means] : body.means)
+              patch.data(row++, v) = means[cell->active_cell_index()];
+          }
       }
     return result;
   }
@@ -226,10 +228,7 @@ namespace Viscoplastic
     using Corner   = std::pair<unsigned int, double>;
     const auto add = [&](const DataOutBase::Patch<2, 2> &from,
                          const std::array<Corner, 4>    &corners) {
-      DataOutBase::Patch<2, 3> patch;
-      patch.patch_index    = result.patches.size();
-      patch.reference_cell = ReferenceCells::Quadrilateral;
-      patch.data.reinit(result.names.size(), 4);
+      auto &patch = result.add_patch();
       for (unsigned int i = 0; i < 4; ++i)
         {
           const auto &[v, angle] = corners[i];
@@ -248,7 +247,6 @@ namespace Viscoplastic
             else
               patch.data(target++, i) = value;
         }
-      result.patches.push_back(patch);
     };
     const double       whole     = degrees * (numbers::PI / 180.);
     const unsigned int n_sectors = std::ceil(degrees / 10. - 1e-9);

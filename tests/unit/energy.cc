@@ -120,6 +120,18 @@ namespace
                       -0.5 * volume *
                         (inverse(z - old_z) * (stress + old_stress)),
                       1e-13);
+          // The part of strains from nodal forces.
+          DistributedVector flow =
+                              irreversible_forces(*body.stress_space, state.z),
+                            u = body.space->owned_vector(), old_u(u);
+          flow -= irreversible_forces(*body.stress_space, old_state.z);
+          body.space->to_frames(state.u, u);
+          body.space->to_frames(old_state.u, old_u);
+          const double work = 0.5 * (flow * u + flow * old_u);
+          EXPECT_NEAR(summarize_stress(*body.laws, old_state, state, &work)
+                        .viscous_dissipation,
+                      summary.viscous_dissipation,
+                      1e-13);
           EXPECT_NEAR(relative_stress_fluctuation(*body.stress_space, state),
                       0.,
                       1e-12);

@@ -34,12 +34,16 @@ namespace Viscoplastic
     double thermal_work = 0.;
   };
 
-  /// @p before: the state before the step, or @p state itself. Collective.
+  /// @p old_state: the state before the step, or @p state itself; @p
+  /// work_on_strain: (z_n - z_{n-1}, eps(u)) of the mean u of both, where that
+  /// is known, which spares strains of samples where laws have no energy of
+  /// their own. Collective.
   template <int dim>
   StressSummary<dim>
   summarize_stress(const FlowLaws<dim> &laws,
                    const State<dim>    &old_state,
-                   const State<dim>    &state);
+                   const State<dim>    &state,
+                   const double        *work_on_strain = nullptr);
 
   /// The stored energy of a cell and its viscous dissipation in the step that
   /// led to a state.
@@ -51,7 +55,8 @@ namespace Viscoplastic
            thermal_work = 0.;
   };
 
-  /// @p before and @p now are laws.at() of both states.
+  /// @p before and @p now are laws.at() of both states. @p without_strain: the
+  /// dissipation is that of E^-1 z alone, the part of strains missing.
   template <int dim>
   CellEnergies
   energies_of_cell(const FlowLaws<dim>                  &laws,
@@ -59,7 +64,8 @@ namespace Viscoplastic
                    const typename FlowLaws<dim>::AtTime &now,
                    const State<dim>                     &old_state,
                    const State<dim>                     &state,
-                   const std::size_t                     cell);
+                   const std::size_t                     cell,
+                   const bool without_strain = false);
 
   /// norm(sigma - P0 sigma)/norm(sigma) with sigma = E eps(u) + z: how much of
   /// the stress the cell means do not see. Collective.

@@ -18,10 +18,20 @@ namespace Viscoplastic
     DistributedVector u;
     /// L(t, .), and its resultant.
     Load<dim> load;
-    /// a(u, .) and a(u, .) + (z, eps(.)).
-    DistributedVector elastic, internal;
+    /// (z, eps(.)), empty if the scene has no z, and a(u, .) + (z, eps(.)).
+    DistributedVector irreversible, internal;
     /// 1/2 a(u, u) and (z, eps(u)).
-    double strain_energy, irreversible_work;
+    double strain_energy = 0., irreversible_work = 0.;
+
+    /// a(u, .).
+    DistributedVector
+    elastic() const
+    {
+      DistributedVector result(internal);
+      if (irreversible.size() > 0)
+        result -= irreversible;
+      return result;
+    }
   };
 
   /// Collective.
@@ -34,7 +44,7 @@ namespace Viscoplastic
 
   /// What rounding leaves of a state in the energy norm: of displacements of
   /// the whole body, as it is carried along, and of loads and forces of z that
-  /// cancel. Without `internal' those of z do not count.
+  /// cancel.
   struct EnergyRounding
   {
     double size;

@@ -81,6 +81,17 @@ namespace Viscoplastic
             const double          *u,
             SymmetricTensor<2, 3> *strain) const;
 
+    /// The mean of these strains, for the price of one.
+    SymmetricTensor<2, 3>
+    mean_strain(const std::size_t cell, const double *u) const;
+
+    /// The positions in @p u of the first components at the vertices of a cell.
+    const unsigned int *
+    nodes_of_cell(const std::size_t cell) const
+    {
+      return &nodes[cell * n_vertices];
+    }
+
     /// Add factor int stress : eps(v) to the local array @p load.
     void
     add_virtual_work(const std::size_t            cell,
@@ -123,6 +134,14 @@ namespace Viscoplastic
     static constexpr unsigned int n_vertices =
       GeometryInfo<dim>::vertices_per_cell;
 
+    /// The strain from the gradients of shape functions, and hoop strains or
+    /// null, at the vertices.
+    SymmetricTensor<2, 3>
+    strain_at(const std::size_t     cell,
+              const double         *u,
+              const Tensor<1, dim> *gradient,
+              const double         *hoop) const;
+
     std::vector<unsigned int>   nodes;     // n_vertices a cell
     std::vector<Tensor<1, dim>> gradients; // n_vertices a sample
     /// The hoop strain of u_r = 1 at each vertex, likewise; empty unless the
@@ -133,6 +152,12 @@ namespace Viscoplastic
     std::vector<double>     volumes;   // 1 a cell
   };
 
+
+  /// (z, eps(v)), a vector in frames. Collective.
+  template <int dim>
+  DistributedVector
+  irreversible_forces(const StressSpace<dim>   &stress_space,
+                      const IrreversibleStress &z);
 
   /// Add -(z, eps(v)) to a load vector in frames. Collective.
   template <int dim>

@@ -64,9 +64,17 @@ namespace Viscoplastic
     SymmetricTensor<2, 3>
     strain(const SymmetricTensor<2, 3> &stress) const;
 
+    /// E^-1 a : b.
+    double
+    complementary_product(const SymmetricTensor<2, 3> &a,
+                          const SymmetricTensor<2, 3> &b) const;
+
     /// E^-1 stress : stress.
     double
-    complementary_square(const SymmetricTensor<2, 3> &stress) const;
+    complementary_square(const SymmetricTensor<2, 3> &stress) const
+    {
+      return complementary_product(stress, stress);
+    }
 
     /// The shear modulus mu, in the unit of stress; of an anisotropic tensor
     /// Voigt's average.
@@ -203,13 +211,13 @@ namespace Viscoplastic
 
 
   DEAL_II_ALWAYS_INLINE inline double
-  Stiffness::complementary_square(const SymmetricTensor<2, 3> &stress) const
+  Stiffness::complementary_product(const SymmetricTensor<2, 3> &a,
+                                   const SymmetricTensor<2, 3> &b) const
   {
     if (anisotropic_data)
-      return anisotropic_strain(stress) * stress;
-    const double pressure = trace(stress) / 3.;
-    return (stress * stress - 3. * pressure * pressure) / (2. * mu) +
-           pressure * pressure / bulk;
+      return anisotropic_strain(a) * b;
+    const double pressures = trace(a) * trace(b) / 9.;
+    return (a * b - 3. * pressures) / (2. * mu) + pressures / bulk;
   }
 
 

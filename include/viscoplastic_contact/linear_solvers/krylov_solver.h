@@ -62,6 +62,10 @@ namespace Viscoplastic
     void
     make_face_matrix();
 
+    /// y := K x for a vector on the face.
+    void
+    multiply_face(const Vector<double> &x, DistributedVector &y) const;
+
     const DistributedMatrix          &matrix;
     const std::vector<bool>          &excluded;
     std::vector<std::size_t>          excluded_entries;

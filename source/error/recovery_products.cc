@@ -53,6 +53,31 @@ namespace Viscoplastic
     const bool          dilates   = local.stress_space.mean_dilatation;
     const bool          is_first  = dual.curved.empty();
     std::vector<double> products(local.cells.size());
+
+    // Means of the strain whose trace is the pressure over K.
+    const Strains         means = mean_strains(u);
+    Strains               acting(means);
+    SymmetricTensor<2, 3> of_trace; // a strain, of those there are
+    for (const unsigned int i : components)
+      if (i < 3)
+        of_trace.access_raw_entry(i) = 1.;
+    of_trace /= trace(of_trace);
+    const auto swelling = [&](const unsigned int           c,
+                              const SymmetricTensor<2, 3> &stress) {
+      return -trace(stress) / (3. * local.cells[c].stiffness.bulk_modulus()) *
+             of_trace;
+    };
+    bool swells = false;
+    if (dilates && n_samples > 1 && !z.empty())
+      for (std::size_t c = 0; c < nodes.size(); ++c)
+        {
+          const SymmetricTensor<2, 3> stress =
+            local.stress_space.mean(c, &z[c * n_samples]);
+          acting[c] -= swelling(c, stress);
+          swells |= std::abs(trace(stress)) > 1e-12 * stress.norm();
+        }
+    swells = Utilities::MPI::max(swells ? 1 : 0,
+                                 local.stress_space.space.communicator) == 1;
     if (is_first)
       {
         const std::size_t n = nodes.size() * n_points;
@@ -60,10 +85,11 @@ namespace Viscoplastic
         dual.dilatation.resize(dilates ? n : 0);
         dual.of_dilatation.resize(dilates ? n : 0);
         dual.strain.resize(law.remainder ? n : 0);
+        const Strains of_w = mean_strains(w);
         for (const Part &part : parts)
           {
-            recover(part, w);
-            dual.curved.push_back(curved_ends(part, w));
+            recover(part, of_w);
+            dual.curved.push_back(curved_ends(part, of_w));
           }
         dual.left = dual.curved;
       }
@@ -72,30 +98,36 @@ namespace Viscoplastic
     for (unsigned int p = 0; p < parts.size(); ++p)
       {
         const Part &part = parts[p];
-        recover(part, u);
-        std::vector<bool> left = curved_ends(part, u);
+        recover(part, means);
+        std::vector<bool> left = curved_ends(part, means);
         for (std::size_t i = 0; i < left.size(); ++i)
           left[i] = left[i] && dual.curved[p][i];
-        if (Utilities::MPI::max(is_first || left != dual.left[p] ? 1 : 0,
-                                local.stress_space.space.communicator) == 1)
+        const bool is_new =
+          Utilities::MPI::max(is_first || left != dual.left[p] ? 1 : 0,
+                              local.stress_space.space.communicator) == 1;
+        if (is_new)
           {
-            recover(part, w);
-            extrapolate(part, w, left);
+            const Strains of_w = mean_strains(w);
+            recover(part, of_w);
+            extrapolate(part, of_w, left);
             renew(part, w, tangents, dual);
             dual.left[p] = left;
-            recover(part, u);
           }
-        extrapolate(part, u, left);
+        if (is_new || swells)
+          recover(part, swells ? acting : means);
+        extrapolate(part, swells ? acting : means, left);
         for (const unsigned int c : part.cells)
           {
             const auto &weights = local.shapes[local.cells[c].shape].weights;
             std::array<double, n_points> dilatation;
-            const auto e = defects(c, strains(c, u, &dilatation));
+            auto e = defects(c, strains(c, u, &dilatation));
             for (unsigned int q = 0; q < n_points; ++q)
               {
-                const unsigned int s       = n_samples == 1 ? 0 : q;
-                const std::size_t  i       = c * n_points + q;
-                double             product = e[q] * dual.stress[i];
+                const unsigned int s = n_samples == 1 ? 0 : q;
+                if (swells)
+                  e[q] += swelling(c, z[c * n_samples + s]);
+                const std::size_t i       = c * n_points + q;
+                double            product = e[q] * dual.stress[i];
                 // Of a shorter step; creep changes no volumes.
                 const SymmetricTensor<2, 3> of_step =
                   e[q] - (1. - law.share) * deviator(e[q]);

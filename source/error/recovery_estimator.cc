@@ -8,40 +8,12 @@
 namespace Viscoplastic
 {
   template <int dim>
-  unsigned int
-  RecoveryEstimator<dim>::opposite(const unsigned int vertex)
-  {
-    return n_vertices - 1 - vertex;
-  }
-
-
-
-  namespace
-  {
-    template <int dim>
-    std::vector<unsigned int>
-    components_of_strains(const bool has_zz)
-    {
-      std::vector<unsigned int> result;
-      for (unsigned int i = 0; i < 6; ++i)
-        {
-          const TableIndices<2> index =
-            SymmetricTensor<2, 3>::unrolled_to_component_indices(i);
-          if ((index[0] < dim && index[1] < dim) ||
-              (has_zz && index[0] == 2 && index[1] == 2))
-            result.push_back(i);
-        }
-      return result;
-    }
-  } // namespace
-
-
-
-  template <int dim>
   RecoveryEstimator<dim>::RecoveryEstimator(const LocalCells<dim> &cells)
     : local(cells)
-    , components(components_of_strains<dim>(cells.has_hoops ||
-                                            cells.stress_space.space.axial))
+    , components(dim == 3 ? std::vector<unsigned int>{0, 1, 2, 3, 4, 5} :
+                 cells.has_hoops || cells.stress_space.space.axial ?
+                            std::vector<unsigned int>{0, 1, 2, 3} :
+                            std::vector<unsigned int>{0, 1, 3})
     , fe(FE_Q<dim>(1), components.size())
     , dof_handler(cells.stress_space.space.dof_handler.get_triangulation())
   {
@@ -358,16 +330,14 @@ namespace Viscoplastic
 
   template <int dim>
   std::array<SymmetricTensor<2, 3>, RecoveryEstimator<dim>::n_points>
-  RecoveryEstimator<dim>::strains(
-    const unsigned int            c,
-    const DistributedVector      &u,
-    std::array<double, n_points> *dilatations) const
+  RecoveryEstimator<dim>::strains(const unsigned int       c,
+                                  const DistributedVector &u,
+                                  double                  *dilatations) const
   {
     const Cell &cell = local.cells[c];
     return local.strains(cell,
                          local.displacements(cell, u.begin()),
-                         dilatations != nullptr ? dilatations->data() :
-                                                  nullptr);
+                         dilatations);
   }
 
 

@@ -191,7 +191,10 @@ namespace Viscoplastic
 
     /// The vertex of a cell that is farthest from this one.
     static unsigned int
-    opposite(const unsigned int vertex);
+    opposite(const unsigned int vertex)
+    {
+      return n_vertices - 1 - vertex;
+    }
 
     /// Set the strains at the nodes of a part to means of its cells.
     /// Collective.
@@ -239,9 +242,9 @@ namespace Viscoplastic
     /// The strains that act in an owned cell, and how much div u_h is larger
     /// than its mean at its points: zero without mean dilatation.
     std::array<SymmetricTensor<2, 3>, n_points>
-    strains(const unsigned int            cell,
-            const DistributedVector      &u,
-            std::array<double, n_points> *dilatations = nullptr) const;
+    strains(const unsigned int       cell,
+            const DistributedVector &u,
+            double                  *dilatations = nullptr) const;
 
     const LocalCells<dim> &local;
     /// The components that strains have, as SymmetricTensor counts them: in the

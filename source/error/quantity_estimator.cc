@@ -360,9 +360,10 @@ namespace Viscoplastic
         if (quantity.is_force() && errors.energy_norm > 0.)
           estimate.space_of_creep =
             std::min(1., errors.creep_path / errors.energy_norm) * sums[2];
-        const bool creeps =
-          tangent && end.rate &&
-          end.rate->relaxation_rate * errors.creep_time > elastic;
+        const double crept  = tangent && end.rate ?
+                                end.rate->relaxation_rate * errors.creep_time :
+                                0.;
+        const bool   creeps = crept > elastic;
         // Residuals do not know what mean dilatation leaves out of pressures.
         if (creeps || (d.mean_dilatation && dual.norm > 0.))
           {
@@ -390,7 +391,8 @@ namespace Viscoplastic
             add_up();
             if (creeps)
               estimate.space_of_creep =
-                std::max(estimate.space_of_creep, least_share * sums[2]);
+                std::max(estimate.space_of_creep,
+                         std::min(1., crept) * least_share * sums[2]);
             if (std::abs(of_residuals) > std::abs(sums[0]))
               {
                 indicators = products;

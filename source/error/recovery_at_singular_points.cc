@@ -26,9 +26,9 @@ namespace Viscoplastic
   template <int dim>
   void
   RecoveryEstimator<dim>::raise_at_singular_points(
-    const Part              &part,
-    const DistributedVector &u,
-    std::vector<double>     &squares) const
+    const Part          &part,
+    const Strains       &means,
+    std::vector<double> &squares) const
   {
     // Strains that grow less than r^(-1/4) are recovered well enough.
     const double     least_growth = std::sqrt(2.);
@@ -43,7 +43,7 @@ namespace Viscoplastic
     sums = 0.;
     for (const unsigned int c : part.cells)
       {
-        densities[c] = energy_density(c, mean_strain(c, u));
+        densities[c] = energy_density(c, means[c]);
         for (unsigned int v = 0; v < n_vertices; ++v)
           {
             node(sums, c, v, 0) += densities[c] * local.stress_space.volume(c);
@@ -64,7 +64,7 @@ namespace Viscoplastic
         for (unsigned int v = 0; v < n_vertices; ++v)
           if (const auto around = patch(c, v);
               around && densities[c] > least_growth * around->density &&
-              is_curved(c, v, u))
+              is_curved(c, v, means))
             growth[v] = densities[c] / around->density;
         const double largest = *std::max_element(growth.begin(), growth.end());
         for (unsigned int v = 0; v < n_vertices; ++v)

@@ -8,40 +8,12 @@
 namespace Viscoplastic
 {
   template <int dim>
-  unsigned int
-  RecoveryEstimator<dim>::opposite(const unsigned int vertex)
-  {
-    return n_vertices - 1 - vertex;
-  }
-
-
-
-  namespace
-  {
-    template <int dim>
-    std::vector<unsigned int>
-    components_of_strains(const bool has_zz)
-    {
-      std::vector<unsigned int> result;
-      for (unsigned int i = 0; i < 6; ++i)
-        {
-          const TableIndices<2> index =
-            SymmetricTensor<2, 3>::unrolled_to_component_indices(i);
-          if ((index[0] < dim && index[1] < dim) ||
-              (has_zz && index[0] == 2 && index[1] == 2))
-            result.push_back(i);
-        }
-      return result;
-    }
-  } // namespace
-
-
-
-  template <int dim>
   RecoveryEstimator<dim>::RecoveryEstimator(const LocalCells<dim> &cells)
     : local(cells)
-    , components(components_of_strains<dim>(cells.has_hoops ||
-                                            cells.stress_space.space.axial))
+    , components(dim == 3 ? std::vector<unsigned int>{0, 1, 2, 3, 4, 5} :
+                 cells.has_hoops || cells.stress_space.space.axial ?
+                            std::vector<unsigned int>{0, 1, 2, 3} :
+                            std::vector<unsigned int>{0, 1, 3})
     , fe(FE_Q<dim>(1), components.size())
     , dof_handler(cells.stress_space.space.dof_handler.get_triangulation())
   {
@@ -234,15 +206,13 @@ namespace Viscoplastic
 
   template <int dim>
   void
-  RecoveryEstimator<dim>::recover(const Part              &part,
-                                  const DistributedVector &u) const
+  RecoveryEstimator<dim>::recover(const Part &part, const Strains &means) const
   {
     values              = 0.;
     double *const nodal = values.begin();
     for (const unsigned int c : part.cells)
       {
-        const SymmetricTensor<2, 3> integral =
-          1. / widths[c] * mean_strain(c, u);
+        const SymmetricTensor<2, 3> integral = 1. / widths[c] * means[c];
         for (const unsigned int node : nodes[c])
           for (unsigned int i = 0; i < components.size(); ++i)
             nodal[node + i] += integral.access_raw_entry(components[i]);
@@ -257,13 +227,13 @@ namespace Viscoplastic
 
   template <int dim>
   std::vector<bool>
-  RecoveryEstimator<dim>::curved_ends(const Part              &part,
-                                      const DistributedVector &u) const
+  RecoveryEstimator<dim>::curved_ends(const Part    &part,
+                                      const Strains &means) const
   {
     std::vector<bool> result;
     for (const unsigned int c : part.cells)
       for (const unsigned int v : ends[c])
-        result.push_back(is_curved(c, v, u));
+        result.push_back(is_curved(c, v, means));
     return result;
   }
 
@@ -306,7 +276,7 @@ namespace Viscoplastic
   template <int dim>
   void
   RecoveryEstimator<dim>::extrapolate(const Part              &part,
-                                      const DistributedVector &u,
+                                      const Strains           &means,
                                       const std::vector<bool> &is_left) const
   {
     mirror();
@@ -319,7 +289,7 @@ namespace Viscoplastic
         if (ends[c].empty())
           continue;
         // Half of the nodes make all of what the mean misses, if it is linear.
-        SymmetricTensor<2, 3> missed = mean_strain(c, u);
+        SymmetricTensor<2, 3> missed = means[c];
         for (const unsigned int node : nodes[c])
           for (unsigned int i = 0; i < components.size(); ++i)
             missed.access_raw_entry(components[i]) -=
@@ -345,28 +315,29 @@ namespace Viscoplastic
 
 
   template <int dim>
-  SymmetricTensor<2, 3>
-  RecoveryEstimator<dim>::mean_strain(const unsigned int       c,
-                                      const DistributedVector &u) const
+  typename RecoveryEstimator<dim>::Strains
+  RecoveryEstimator<dim>::mean_strains(const DistributedVector &u) const
   {
-    const Cell &cell = local.cells[c];
-    return local.mean_strain(cell, local.displacements(cell, u.begin()));
+    Strains result;
+    result.reserve(local.cells.size());
+    for (const Cell &cell : local.cells)
+      result.push_back(
+        local.mean_strain(cell, local.displacements(cell, u.begin())));
+    return result;
   }
 
 
 
   template <int dim>
   std::array<SymmetricTensor<2, 3>, RecoveryEstimator<dim>::n_points>
-  RecoveryEstimator<dim>::strains(
-    const unsigned int            c,
-    const DistributedVector      &u,
-    std::array<double, n_points> *dilatations) const
+  RecoveryEstimator<dim>::strains(const unsigned int       c,
+                                  const DistributedVector &u,
+                                  double                  *dilatations) const
   {
     const Cell &cell = local.cells[c];
     return local.strains(cell,
                          local.displacements(cell, u.begin()),
-                         dilatations != nullptr ? dilatations->data() :
-                                                  nullptr);
+                         dilatations);
   }
 
 
@@ -424,16 +395,15 @@ namespace Viscoplastic
 
   template <int dim>
   bool
-  RecoveryEstimator<dim>::is_curved(const unsigned int       c,
-                                    const unsigned int       vertex,
-                                    const DistributedVector &u) const
+  RecoveryEstimator<dim>::is_curved(const unsigned int c,
+                                    const unsigned int vertex,
+                                    const Strains     &means) const
   {
     constexpr double   least_curvature = 0.25;
     const unsigned int other           = across[c][opposite(vertex)];
     if (other == numbers::invalid_unsigned_int)
       return false;
-    const SymmetricTensor<2, 3> here  = mean_strain(c, u),
-                                there = mean_strain(other, u),
+    const SymmetricTensor<2, 3> here = means[c], there = means[other],
                                 patch = recovered(nodes[c][opposite(vertex)]);
     return energy_density(c, here + there - 2. * patch) >
            least_curvature * energy_density(c, here - patch);
@@ -446,11 +416,12 @@ namespace Viscoplastic
   RecoveryEstimator<dim>::estimate(const DistributedVector &u,
                                    double                  *deviatoric) const
   {
+    const Strains       means = mean_strains(u);
     std::vector<double> squares(local.cells.size());
     double              of_deviators = 0.;
     for (const Part &part : parts)
       {
-        recover(part, u);
+        recover(part, means);
         for (const unsigned int c : part.cells)
           {
             const Cell &cell    = local.cells[c];
@@ -466,7 +437,7 @@ namespace Viscoplastic
           }
         // What linear laws have at corners is recovered well enough.
         if (part.largest_share > 0.5)
-          raise_at_singular_points(part, u, squares);
+          raise_at_singular_points(part, means, squares);
       }
     if (deviatoric != nullptr)
       *deviatoric = Utilities::MPI::sum(of_deviators,

@@ -17,7 +17,7 @@ namespace Viscoplastic
     for (const unsigned int c : part.cells)
       {
         std::array<double, n_points> dilatation;
-        const auto                   eps = strains(c, w, &dilatation);
+        const auto                   eps = strains(c, w, dilatation.data());
         const auto                   e   = defects(c, eps);
         for (unsigned int q = 0; q < n_points; ++q)
           {
@@ -60,42 +60,66 @@ namespace Viscoplastic
         dual.dilatation.resize(dilates ? n : 0);
         dual.of_dilatation.resize(dilates ? n : 0);
         dual.strain.resize(law.remainder ? n : 0);
-        for (const Part &part : parts)
-          {
-            recover(part, w);
-            dual.curved.push_back(curved_ends(part, w));
-          }
-        dual.left = dual.curved;
+        dual.curved.resize(parts.size());
+        dual.left.resize(parts.size());
       }
     AssertDimension(dual.strain.size(),
                     law.remainder ? nodes.size() * n_points : 0);
+
+    // A strain in the place of the volume that z keeps.
+    SymmetricTensor<2, 3> unit; // of the components there are
+    for (const unsigned int i : components)
+      if (i < 3)
+        unit.access_raw_entry(i) = 1.;
+    const auto swelling = [&](const unsigned int           c,
+                              const SymmetricTensor<2, 3> &stress) {
+      return -trace(stress) /
+             (3. * local.cells[c].stiffness.bulk_modulus() * trace(unit)) *
+             unit;
+    };
+    Strains                      means = mean_strains(u);
+    IrreversibleStress           of_cells;
+    const SymmetricTensor<2, 3> *mean_z =
+      dilates && n_samples > 1 ? local.mean_irreversible_stress(z, of_cells) :
+                                 nullptr;
+    for (unsigned int c = 0; mean_z != nullptr && c < means.size(); ++c)
+      means[c] -= swelling(c, mean_z[c]);
     for (unsigned int p = 0; p < parts.size(); ++p)
       {
         const Part &part = parts[p];
-        recover(part, u);
-        std::vector<bool> left = curved_ends(part, u);
+        recover(part, means);
+        std::vector<bool> left = curved_ends(part, means);
+        if (is_first)
+          {
+            const Strains of_w = mean_strains(w);
+            recover(part, of_w);
+            dual.curved[p] = curved_ends(part, of_w);
+          }
         for (std::size_t i = 0; i < left.size(); ++i)
           left[i] = left[i] && dual.curved[p][i];
         if (Utilities::MPI::max(is_first || left != dual.left[p] ? 1 : 0,
                                 local.stress_space.space.communicator) == 1)
           {
-            recover(part, w);
-            extrapolate(part, w, left);
+            const Strains of_w = mean_strains(w);
+            recover(part, of_w);
+            extrapolate(part, of_w, left);
             renew(part, w, tangents, dual);
             dual.left[p] = left;
-            recover(part, u);
+            recover(part, means);
           }
-        extrapolate(part, u, left);
+        extrapolate(part, means, left);
         for (const unsigned int c : part.cells)
           {
             const auto &weights = local.shapes[local.cells[c].shape].weights;
             std::array<double, n_points> dilatation;
-            const auto e = defects(c, strains(c, u, &dilatation));
+            auto e = defects(c, strains(c, u, dilatation.data()));
             for (unsigned int q = 0; q < n_points; ++q)
               {
-                const unsigned int s       = n_samples == 1 ? 0 : q;
-                const std::size_t  i       = c * n_points + q;
-                double             product = e[q] * dual.stress[i];
+                const unsigned int s = n_samples == 1 ? 0 : q;
+                if (mean_z != nullptr)
+                  e[q] += swelling(c, z[c * n_samples + s]);
+                const std::size_t i       = c * n_points + q;
+                double            product = e[q] * dual.stress[i];
                 // Of a shorter step; creep changes no volumes.
                 const SymmetricTensor<2, 3> of_step =
                   e[q] - (1. - law.share) * deviator(e[q]);

@@ -105,7 +105,8 @@ namespace Viscoplastic
     /// from the mixed form of displacement and pressure, which that method is:
     /// the body feels what the pressure of z, as of heat, varies by in a cell
     /// (if it does: @p z may be cell means, or empty), the equations do not.
-    /// Collective.
+    /// What is recovered of the volume then is the pressure, K tr eps less that
+    /// of z: where stress has relaxed it is small beside both. Collective.
     Vector<double>
     multiply(const DistributedVector                  &u,
              const IrreversibleStress                 &z,
@@ -117,6 +118,8 @@ namespace Viscoplastic
   private:
     static constexpr unsigned int n_vertices = LocalCells<dim>::n_vertices,
                                   n_points   = LocalCells<dim>::n_points;
+    /// By cell, owned or not.
+    using Strains     = std::vector<SymmetricTensor<2, 3>>;
     using NodalVector = LinearAlgebra::distributed::Vector<double>;
     using Cell        = typename LocalCells<dim>::LocalCell;
 
@@ -163,15 +166,15 @@ namespace Viscoplastic
     /// what is recovered at the node between them; no where cells are not
     /// those of a regular mesh.
     bool
-    is_curved(const unsigned int       cell,
-              const unsigned int       vertex,
-              const DistributedVector &u) const;
+    is_curved(const unsigned int cell,
+              const unsigned int vertex,
+              const Strains     &means) const;
 
     /// Raise eta_K^2 by index of cell at singular points.
     void
-    raise_at_singular_points(const Part              &part,
-                             const DistributedVector &u,
-                             std::vector<double>     &squares) const;
+    raise_at_singular_points(const Part          &part,
+                             const Strains       &means,
+                             std::vector<double> &squares) const;
 
     /// Twice the energy of a strain, by volume.
     double
@@ -188,24 +191,27 @@ namespace Viscoplastic
 
     /// The vertex of a cell that is farthest from this one.
     static unsigned int
-    opposite(const unsigned int vertex);
+    opposite(const unsigned int vertex)
+    {
+      return n_vertices - 1 - vertex;
+    }
 
     /// Set the strains at the nodes of a part to means of its cells.
     /// Collective.
     void
-    recover(const Part &part, const DistributedVector &u) const;
+    recover(const Part &part, const Strains &means) const;
 
     /// Whether strains that have been recovered are curved, for all ends of a
     /// part in turn.
     std::vector<bool>
-    curved_ends(const Part &part, const DistributedVector &u) const;
+    curved_ends(const Part &part, const Strains &means) const;
 
     /// Mirror recovered strains at planes of symmetry, and add to those at the
     /// boundary what the cell means of eps* miss, but for ends that are left.
     /// Collective.
     void
     extrapolate(const Part              &part,
-                const DistributedVector &u,
+                const Strains           &means,
                 const std::vector<bool> &is_left) const;
 
     /// Set what is taken of @p w in the cells of a part, whose strains have
@@ -224,9 +230,8 @@ namespace Viscoplastic
     void
     interpolate_hanging_nodes(const Part &part) const;
 
-    /// The mean strain of a cell.
-    SymmetricTensor<2, 3>
-    mean_strain(const unsigned int cell, const DistributedVector &u) const;
+    Strains
+    mean_strains(const DistributedVector &u) const;
 
     /// eps* - eps_h at the points of an owned cell, from what is recovered and
     /// eps_h.
@@ -237,9 +242,9 @@ namespace Viscoplastic
     /// The strains that act in an owned cell, and how much div u_h is larger
     /// than its mean at its points: zero without mean dilatation.
     std::array<SymmetricTensor<2, 3>, n_points>
-    strains(const unsigned int            cell,
-            const DistributedVector      &u,
-            std::array<double, n_points> *dilatations = nullptr) const;
+    strains(const unsigned int       cell,
+            const DistributedVector &u,
+            double                  *dilatations = nullptr) const;
 
     const LocalCells<dim> &local;
     /// The components that strains have, as SymmetricTensor counts them: in the

@@ -482,7 +482,7 @@ def children(pid):
 
 class Signals(RestartCase):
     OVERRIDES = {
-        "Geometry/Arguments": "48, 24 : 0, 0 : 2, 1 : true",
+        "Geometry/Arguments": "32, 16 : 0, 0 : 2, 1 : true",
         "Time/Phases": "1: 60, 2: 60",
         "Output/Fields every": 10,
     }

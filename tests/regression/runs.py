@@ -25,11 +25,21 @@ from harness import (
 EVERY_STEP = {"Checkpoint/Every n steps": 1, "Checkpoint/Keep": 1000}
 
 
+def memory():
+    """Where checkpoints need not wait for a disk, if there is room; else nothing."""
+    folder = "/dev/shm"
+    if os.access(folder, os.W_OK) and shutil.disk_usage(folder).free > 1 << 30:
+        return folder
+
+
 class Job:
     """A scene in a directory of its own, to be run several times."""
 
+    place = memory()
+
     def __init__(self, scene, overrides=None, copy_of=None):
-        self.work = Path(tempfile.mkdtemp(prefix=f"restart_{Path(scene).name}_"))
+        prefix = f"restart_{Path(scene).name}_"
+        self.work = Path(tempfile.mkdtemp(prefix=prefix, dir=self.place))
         self.results = self.work / "results"
         self.checkpoints = self.results / "checkpoint"
         self.scene = scene

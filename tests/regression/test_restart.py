@@ -357,6 +357,12 @@ class OtherRanks(RestartCase):
         self.compare("cantilever_creep", {"Time/Phases": "2.6: 10"}, 5, (3, 1, 2))
 
 
+class JobOnDisk(Job):
+    """Whose checkpoints are in part there for as long as a disk takes."""
+
+    place = None
+
+
 class Killed(RestartCase):
     """kill -9 at random instants, also inside writes."""
 
@@ -421,10 +427,10 @@ class Killed(RestartCase):
         """Killed when a checkpoint is there in part."""
         chance = random.Random(20002)
         n_parts = 0
-        with Job("slab_adaptive", self.OVERRIDES) as reference:
+        with JobOnDisk("slab_adaptive", self.OVERRIDES) as reference:
             reference.run()
             for i in range(N_KILLS):
-                with Job("slab_adaptive", self.OVERRIDES) as job:
+                with JobOnDisk("slab_adaptive", self.OVERRIDES) as job:
                     process = job.start()
                     wanted = chance.randrange(2, 14)
                     part = job.checkpoints / f"step_{wanted:06}.unfinished"
@@ -476,7 +482,7 @@ def children(pid):
 
 class Signals(RestartCase):
     OVERRIDES = {
-        "Geometry/Arguments": "48, 24 : 0, 0 : 2, 1 : true",
+        "Geometry/Arguments": "32, 16 : 0, 0 : 2, 1 : true",
         "Time/Phases": "1: 60, 2: 60",
         "Output/Fields every": 10,
     }

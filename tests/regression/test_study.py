@@ -262,7 +262,7 @@ class Ladders(TestCase):
             Time__Phases="1: 2, 2: 2",
             Study__Levels=3,
             Study__Ladders="both",
-            Study__Target_errors="0.01",
+            Study__Target_errors="0.02",
         ) as folder:
             folder.run("study", code=0)
             timed = sorted(folder.study.glob("*_timing/result.json"))
@@ -276,7 +276,7 @@ class Ladders(TestCase):
             (costs,), (price,) = about["costs"], about["prices"]
             largest = max(solver["largest_dofs"] for solver in costs["solvers"])
             self.assertEqual(largest, result["numbers"]["dofs"])
-            self.assertGreater(price["dofs"], 4e4)
+            self.assertGreater(price["dofs"], 1e4)
             self.assertIn(
                 price["solver"], ("direct", "geometric multigrid", "algebraic multigrid")
             )

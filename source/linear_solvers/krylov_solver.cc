@@ -4,6 +4,7 @@
 #include <deal.II/lac/solver_gmres.h>
 
 #include <viscoplastic_contact/base/progress.h>
+#include <viscoplastic_contact/contact/sparse_face_matrix.h>
 #include <viscoplastic_contact/linear_solvers/krylov_solver.h>
 #include <viscoplastic_contact/linear_solvers/residual_rounding.h>
 
@@ -359,6 +360,10 @@ namespace Viscoplastic
 
 
 
+  KrylovSolver::~KrylovSolver() = default;
+
+
+
   bool
   KrylovSolver::renew(const DistributedMatrix &of)
   {
@@ -411,6 +416,38 @@ namespace Viscoplastic
 
 
 
+  std::string
+  KrylovSolver::name() const
+  {
+    return "conjugate gradients with " + preconditioner->name();
+  }
+
+
+
+  std::optional<PreconditionerState>
+  KrylovSolver::preconditioner_state() const
+  {
+    return preconditioner->state();
+  }
+
+
+
+  void
+  KrylovSolver::restore(const std::optional<PreconditionerState> &state)
+  {
+    preconditioner->restore(state);
+  }
+
+
+
+  const FaceMatrix &
+  KrylovSolver::face_matrix() const
+  {
+    return *sparse_face_matrix;
+  }
+
+
+
   std::unique_ptr<ContactSolve>
   KrylovSolver::begin(const DistributedVector &load,
                       DistributedVector       &u,
@@ -429,7 +466,10 @@ namespace Viscoplastic
   {
     Solve          solve(*this, load, u, scale);
     FaceTruncation free_face;
-    free_face.projector.assign(face.n_nodes(), identity());
+    Tensor<2, 3>   identity;
+    for (unsigned int d = 0; d < 3; ++d)
+      identity[d][d] = 1.;
+    free_face.projector.assign(face.n_nodes(), identity);
     free_face.spring.assign(face.n_nodes(), Tensor<2, 3>());
     solve.set_truncation(free_face, /* may_rebuild = */ true);
 

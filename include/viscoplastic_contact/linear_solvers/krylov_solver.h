@@ -2,7 +2,6 @@
 #pragma once
 
 #include <viscoplastic_contact/base/linear_algebra.h>
-#include <viscoplastic_contact/contact/sparse_face_matrix.h>
 #include <viscoplastic_contact/linear_solvers/bulk_solver.h>
 #include <viscoplastic_contact/linear_solvers/face_restriction.h>
 #include <viscoplastic_contact/linear_solvers/preconditioner.h>
@@ -12,6 +11,8 @@
 
 namespace Viscoplastic
 {
+  class SparseFaceMatrix;
+
   /// Preconditioned conjugate gradients on the truncated space, on any number
   /// of ranks.
   class KrylovSolver : public BulkSolver
@@ -21,6 +22,7 @@ namespace Viscoplastic
                  const std::vector<bool>        &excluded,
                  const FaceRestriction          &restriction,
                  std::unique_ptr<Preconditioner> preconditioner);
+    ~KrylovSolver() override;
 
     bool
     is_exact() const override
@@ -29,10 +31,7 @@ namespace Viscoplastic
     }
 
     std::string
-    name() const override
-    {
-      return "conjugate gradients with " + preconditioner->name();
-    }
+    name() const override;
 
     Report
     solve(const DistributedVector &load,
@@ -46,25 +45,16 @@ namespace Viscoplastic
           const SolutionScale     &scale) override;
 
     const FaceMatrix &
-    face_matrix() const override
-    {
-      return *sparse_face_matrix;
-    }
+    face_matrix() const override;
 
     bool
     renew(const DistributedMatrix &matrix) override;
 
     std::optional<PreconditionerState>
-    preconditioner_state() const override
-    {
-      return preconditioner->state();
-    }
+    preconditioner_state() const override;
 
     void
-    restore(const std::optional<PreconditionerState> &state) override
-    {
-      preconditioner->restore(state);
-    }
+    restore(const std::optional<PreconditionerState> &state) override;
 
   private:
     class Solve;

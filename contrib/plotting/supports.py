@@ -79,8 +79,8 @@ class Supports:
         role = self.parameters.get((f"Boundary {number}", "Role"), "free")
         if self.parameters.get((f"Boundary {number}", "Against"), "").strip():
             return "free"
-        opens = "unilateral", "normal compliance"
-        if role == "contact" and self.entry(number, "Contact law") in opens:
+        held = "", "not given", "bilateral", "given normal stress"
+        if role == "contact" and self.entry(number, "Contact law") not in held:
             return "unilateral"
         return "traction" if role == "free" and self.is_loaded(number) else role
 

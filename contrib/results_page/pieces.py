@@ -129,7 +129,8 @@ def manufactured_cases():
 
 def unilateral(friction_law, contact_law):
     """What a contact piece has: its friction law, and whether it may open."""
-    opens = contact_law in ("unilateral", "normal compliance")
+    held = None, "not given", "bilateral", "given normal stress"
+    opens = contact_law not in held
     return f"{friction_law}, {contact_law}" if opens else friction_law
 
 

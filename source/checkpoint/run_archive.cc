@@ -199,10 +199,9 @@ namespace Viscoplastic
                           "Contact law",
                           "Foundation normal",
                           "Friction law",
-                          "Compliance",
-                          "Compliance exponent",
                           "Normal stiffness",
-                          "Tangential stiffness"});
+                          "Tangential stiffness"}) ||
+               find_named(entries_of(contact_laws()), entry) != nullptr;
       return section == "Initial state" || section == "Dimension" ||
              section == "Units" || section == "Supports" ||
              path == "Temperature/Reference temperature" ||

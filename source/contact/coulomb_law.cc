@@ -194,12 +194,7 @@ namespace Viscoplastic
                   !(coefficient > 0.) || !(state.multiplier[o][0] > 0.))
                 continue;
               if (truncation.tilt.empty())
-                {
-                  Tensor<2, 3> identity;
-                  for (unsigned int d = 0; d < 3; ++d)
-                    identity[d][d] = 1.;
-                  truncation.tilt.assign(face.n_nodes(), identity);
-                }
+                truncation.tilt.assign(face.n_nodes(), identity());
               if (!forces)
                 {
                   forces.emplace(face, node, state, this);

@@ -66,13 +66,11 @@ namespace Viscoplastic
                   const double                     stiffest)
   {
     FaceTruncation truncation;
-    truncation.projector.resize(face.n_nodes());
+    truncation.projector.resize(face.n_nodes(), identity());
     truncation.spring.resize(face.n_nodes());
     for (unsigned int node = 0; node < face.n_nodes(); ++node)
       {
         Tensor<2, 3> &projector = truncation.projector[node];
-        for (unsigned int d = 0; d < 3; ++d)
-          projector[d][d] = 1.;
         truncation.spring[node] =
           turning_spring(face, node, state, inverse_diagonal, stiffest);
         for (unsigned int p = face.first_point[node];

@@ -415,10 +415,8 @@ namespace Viscoplastic
     std::vector<Tensor<1, 3>> result(end - obstacle);
     std::vector<unsigned int> springs;
     std::vector<Tensor<1, 3>> normals, units;
-    Tensor<2, 3>              tilt, free;
-    for (unsigned int d = 0; d < 3; ++d)
-      tilt[d][d] = free[d][d] = 1.;
-    free -= held;
+    Tensor<2, 3>              tilt = identity();
+    const Tensor<2, 3>        free = tilt - held;
     for (unsigned int o = obstacle; o < end; ++o)
       {
         Tensor<1, 3>       unit   = face.points[o].map[0];

@@ -31,8 +31,8 @@ namespace Viscoplastic
           start = next;
         }
       AssertThrow(false,
-                  ExcMessage("The penetration of normal compliance cannot be "
-                             "found for its 'Compliance exponent'."));
+                  ExcMessage("The penetration of a foundation that gives way "
+                             "cannot be found for its pressure law."));
       return start;
     }
   } // namespace
@@ -45,7 +45,7 @@ namespace Viscoplastic
     // No piece alone would be pressed less.
     double most = std::numeric_limits<double>::max();
     for (const Piece &piece : pieces)
-      most = std::min(most, std::pow(p / piece.stiffness, 1. / piece.exponent));
+      most = std::min(most, piece.law.penetration(piece.factor, p));
     return pieces.size() == 1 ? most :
                                 root_below(
                                   most,

@@ -291,7 +291,7 @@ namespace Viscoplastic
               std::find(ids.begin(), ids.end(), pair.first) != ids.end())
             face_restriction.add_compliance(p,
                                             stiffness[p],
-                                            condition.compliance_exponent);
+                                            condition.pressure_law);
       }
   }
 

@@ -41,9 +41,7 @@ namespace Viscoplastic
     // rho_c = int rho phi_c, with which j_n(v) = sum_c rho_c |v_c|.
     std::vector<double> result = sum_shares(
       [t](const Sample &sample) {
-        return sample.condition->has_computed_pressure() ?
-                 0. :
-                 sample.condition->bound(sample.x, t);
+        return sample.condition->bound(sample.x, t);
       },
       /* of_obstacles = */ false,
       &slip_rates);
@@ -206,7 +204,7 @@ namespace Viscoplastic
         const std::vector<double> coefficients = sum_shares(
           [&](const Sample &sample) {
             return sample.condition == &condition ?
-                     condition.bound(sample.x, t) :
+                     condition.friction_coefficient(sample.x, t) :
                      0.;
           },
           /* of_obstacles = */ false,

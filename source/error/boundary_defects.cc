@@ -282,10 +282,14 @@ namespace Viscoplastic
               result[node.active_cell] += beside * node.area;
             continue;
           }
-        double missing = condition.bound(node.position, state.t) * node.area *
-                         held.norm() / slip.norm();
+        const auto of_bound = [&](const double bound) {
+          return bound * node.area * held.norm() / slip.norm();
+        };
+        double missing = of_bound(condition.bound(node.position, state.t));
         if (condition.has_computed_pressure())
-          missing *= std::abs(at_node(density) * node.normal);
+          missing +=
+            of_bound(condition.friction_coefficient(node.position, state.t)) *
+            std::abs(at_node(density) * node.normal);
         if (quantity.is_sum())
           missing *= held.norm();
         else if (is_force(condition))

@@ -46,7 +46,7 @@ namespace Viscoplastic
               break;
             residual =
               tangential(traction + multiplier_density, condition.normal);
-            if (condition.contact_law == ContactLaw::given_stress)
+            if (condition.has_given_stress())
               residual +=
                 ((traction - given) * condition.normal) * condition.normal;
             break;
@@ -161,7 +161,7 @@ namespace Viscoplastic
     if (!face.condition->gives_way())
       return w > 0. ? k * w : std::min(-k * w, p);
     NormalCompliance foundation;
-    foundation.add(face.compliances[q], face.condition->compliance_exponent);
+    foundation.add(face.compliances[q], face.condition->pressure_law);
     const double another_pressure = std::abs(p - foundation.force(w));
     return p > 0. ? std::min(k * std::abs(w - foundation.penetration(p)),
                              another_pressure) :

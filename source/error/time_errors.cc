@@ -19,14 +19,8 @@ namespace Viscoplastic
                     const EvaluatedState<dim> &old,
                     const EvaluatedState<dim> &end)
     {
-      const Scene<dim> &scene   = laws.stress_space.space.scene;
-      const auto        changes = [](const auto &datum) {
-        return datum && datum->depends_on_time();
-      };
-      for (const auto &[id, condition] : scene.boundary)
-        if (changes(condition.friction_bound) ||
-            changes(condition.friction_coefficient) ||
-            changes(condition.normal_stress))
+      for (const auto &[id, condition] : laws.stress_space.space.scene.boundary)
+        if (condition.friction_depends_on_time())
           return std::numeric_limits<double>::infinity();
       // So does a temperature.
       if (laws.thermal && laws.thermal->changes(old.state.t, end.state.t))

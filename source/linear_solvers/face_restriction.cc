@@ -55,45 +55,6 @@ namespace Viscoplastic
 
 
   void
-  FaceRestriction::project(const FaceTruncation &truncation,
-                           DistributedVector    &v) const
-  {
-    if (truncation.projector.empty())
-      return;
-    Vector<double> on_face = gather(v);
-    truncation.project(contact_layout, on_face);
-    set(on_face, v);
-  }
-
-
-
-  void
-  FaceRestriction::tilt_equations(const FaceTruncation &truncation,
-                                  DistributedVector    &v) const
-  {
-    if (truncation.tilt.empty())
-      return;
-    Vector<double> on_face = gather(v);
-    truncation.tilt_equations(contact_layout, on_face);
-    set(on_face, v);
-  }
-
-
-
-  void
-  FaceRestriction::tilt_motions(const FaceTruncation &truncation,
-                                DistributedVector    &v) const
-  {
-    if (truncation.tilt.empty())
-      return;
-    Vector<double> on_face = gather(v);
-    truncation.tilt_motions(contact_layout, on_face);
-    set(on_face, v);
-  }
-
-
-
-  void
   FaceRestriction::add_springs(const FaceTruncation    &truncation,
                                const DistributedVector &x,
                                DistributedVector       &y) const

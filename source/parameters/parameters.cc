@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <deal.II/base/patterns.h>
 
+#include <viscoplastic_contact/laws/contact_laws.h>
 #include <viscoplastic_contact/laws/viscoplastic_law.h>
 #include <viscoplastic_contact/parameters/parameters.h>
 
@@ -361,21 +362,71 @@ namespace Viscoplastic
 
 
 
+  namespace
+  {
+    template <typename Law>
+    void
+    add_law(ParameterHandler       &prm,
+            const std::string      &entry,
+            const Law             *&chosen,
+            const std::vector<Law> &laws,
+            const std::string      &where,
+            const std::string      &default_law)
+    {
+      std::string help;
+      for (const Law &law : laws)
+        help += (help.empty() ? " `" : "; `") + law.name + "': " + law.help;
+      prm.declare_entry(entry,
+                        "not given",
+                        Patterns::Selection(names_of(laws)),
+                        "For the role contact, what acts " + where + ':' +
+                          help + '.' + default_law);
+      prm.add_action(entry, [&chosen, &laws](const std::string &name) {
+        chosen = find_named(laws, name);
+      });
+    }
+
+
+
+    template <typename Law>
+    void
+    add_entries(ParameterHandler                   &prm,
+                const std::vector<Law>             &laws,
+                std::map<std::string, std::string> &values)
+    {
+      for (const LawEntry &entry : entries_of(laws))
+        if (entry.is_number())
+          prm.add_parameter(entry.name,
+                            values.at(entry.name),
+                            entry.help,
+                            Patterns::Double(entry.least));
+        else
+          prm.add_parameter(entry.name, values.at(entry.name), entry.help);
+    }
+  } // namespace
+
+
+
+  BoundaryParameters::BoundaryParameters()
+  {
+    for (const auto &entries :
+         {entries_of(contact_laws()), entries_of(friction_laws())})
+      for (const LawEntry &entry : entries)
+        of_laws[entry.name] = entry.default_value;
+  }
+
+
+
   void
   BoundaryParameters::declare_contact(ParameterHandler &prm)
   {
-    add_choice(
-      prm,
-      "Contact law",
-      contact_law,
-      "For the role contact, what acts along the normal: `bilateral': u_nu = "
-      "d, also under tension; `given normal stress': sigma_nu = S; "
-      "`unilateral': u_n <= g + d, a foundation that presses but does not "
-      "pull, so that contact opens and closes; `normal compliance': the same "
-      "with a foundation that gives way, sigma_n = -c (u_n - g - d)_+^m. "
-      "Where it is not given, it is "
-      "that of the paper for the friction law: given normal stress for "
-      "coulomb, otherwise bilateral.");
+    add_law(prm,
+            "Contact law",
+            contact_law,
+            contact_laws(),
+            "along the normal",
+            " Where it is not given, it is that of the paper for the friction "
+            "law: given normal stress for coulomb, otherwise bilateral.");
     prm.add_parameter("Against",
                       against,
                       "For the role contact: the boundary of another body, by "
@@ -399,30 +450,10 @@ namespace Viscoplastic
       "Where it is empty, it is the outward normal of the piece, which "
       "has to be flat unless another body is opposite.",
       Patterns::List(Patterns::Double()));
-    prm.add_parameter("Compliance",
-                      compliance,
-                      "c(x) >= 0 of normal compliance, the pressure at a "
-                      "penetration of one. Unit: stress/length^m.");
-    prm.add_parameter("Compliance exponent",
-                      compliance_exponent,
-                      "m >= 1 of normal compliance. Unit: 1.",
-                      Patterns::Double(1.));
-    add_choice(
-      prm,
-      "Friction law",
-      friction_law,
-      "For the role contact, what acts along the face: `tresca' has a given "
-      "friction bound (5.22); `coulomb' has the bound mu |S| of a given normal "
-      "stress (5.6), or in unilateral contact and normal compliance mu p with "
-      "the pressure p that comes out (`Solver/Coulomb pressure'); `none' is contact without friction; `glued' "
-      "holds the body fast to the foundation.");
-    prm.add_parameter("Friction bound",
-                      friction_bound,
-                      "g(x,t) >= 0 of the law tresca. Unit: stress.");
-    prm.add_parameter("Friction coefficient",
-                      friction_coefficient,
-                      "mu(x,t) >= 0 of the law coulomb, a pure number. Unit: "
-                      "1.");
+    add_entries(prm, contact_laws(), of_laws);
+    add_law(
+      prm, "Friction law", friction_law, friction_laws(), "along the face", "");
+    add_entries(prm, friction_laws(), of_laws);
     prm.add_parameter("Slip rate factor",
                       slip_rate_factor,
                       "f(v) >= 0, by which the friction bound of tresca and "

@@ -161,7 +161,8 @@ namespace Viscoplastic
     for (const auto &pair : scene.boundary)
       {
         has_given_bound |= pair.second.is_unilateral() &&
-                           pair.second.friction_law == FrictionLaw::tresca;
+                           pair.second.has_friction() &&
+                           !pair.second.has_computed_pressure();
         has_computed_pressure |= pair.second.has_computed_pressure();
         gives_way |= pair.second.gives_way();
       }

@@ -311,16 +311,16 @@ namespace Viscoplastic
           add(here.largest(*condition.traction, dim),
               "the traction" + where,
               true);
-        for (const auto &[datum, name, is_load] :
-             {std::make_tuple(&condition.pressure, "the pressure", true),
-              std::make_tuple(&condition.normal_stress,
-                              "the normal stress",
-                              true),
-              std::make_tuple(&condition.friction_bound,
-                              "the friction bound",
-                              false)})
+        for (const auto &[datum, name] :
+             {std::make_pair(&condition.pressure, "the pressure"),
+              std::make_pair(&condition.normal_stress, "the normal stress")})
           if (*datum)
-            add(here.largest(**datum), name + where, is_load);
+            add(here.largest(**datum), name + where, true);
+        for (unsigned int i = 0; i < condition.friction_data.size(); ++i)
+          if (!condition.friction_law->entries[i].of_pressure)
+            add(here.largest(condition.friction_data[i]),
+                "the friction bound" + where,
+                false);
         // A foundation that withdraws from what may leave it loads nothing.
         const auto &foundation   = condition.foundation_displacement;
         double      displacement = !foundation ? 0. :
@@ -483,28 +483,24 @@ namespace Viscoplastic
             scene.names.of("boundary", id) + " is never pressed on the " +
             (condition.against ? "other body" : "foundation") +
             ", and nothing else loads the scene.");
-        if (condition.friction_coefficient)
-          if (const double largest =
-                DataSampler<dim>(
-                  places_on_boundary(
-                    discretization.space.dof_handler.get_triangulation(), id),
-                  scene)
-                  .largest(*condition.friction_coefficient);
-              largest > 5.)
-            result.push_back("'Boundary " + std::to_string(id) +
-                             "/Friction coefficient' is up to " +
-                             number(largest) + "; is it one of percent?");
+        const DataSampler<dim> here(
+          places_on_boundary(
+            discretization.space.dof_handler.get_triangulation(), id),
+          scene);
+        for (unsigned int i = 0; i < condition.friction_data.size(); ++i)
+          if (const LawEntry &entry = condition.friction_law->entries[i];
+              entry.of_pressure)
+            if (const double largest = here.largest(condition.friction_data[i]);
+                largest > 5.)
+              result.push_back("'Boundary " + std::to_string(id) + '/' +
+                               entry.name + "' is up to " + number(largest) +
+                               "; is it one of percent?");
         if (!condition.is_unilateral() ||
             !(condition.against || condition.given_gap))
           continue;
         const double overlap =
-          condition.against ?
-            largest_overlap(discretization.space, condition) :
-            -DataSampler<dim>(
-               places_on_boundary(
-                 discretization.space.dof_handler.get_triangulation(), id),
-               scene)
-               .least(*condition.given_gap);
+          condition.against ? largest_overlap(discretization.space, condition) :
+                              -here.least(*condition.given_gap);
         if (overlap > 0.05 * size)
           result.push_back(
             scene.names.of("boundary", id) + " overlaps the " +

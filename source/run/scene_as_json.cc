@@ -23,9 +23,7 @@ namespace Viscoplastic
 
 
     /// Entries of boundaries that may change over space and time.
-    const std::vector<std::string> boundary_data{"Friction bound",
-                                                 "Friction coefficient",
-                                                 "Gap",
+    const std::vector<std::string> boundary_data{"Gap",
                                                  "Foundation motion",
                                                  "Foundation displacement",
                                                  "Normal stress",
@@ -126,8 +124,11 @@ namespace Viscoplastic
           add_material("Material " + std::to_string(id), material, id);
         for (const auto &[id, boundary] : scene.boundaries)
           {
-            const std::string section = "Boundary " + std::to_string(id);
-            for (const std::string &name : boundary_data)
+            const std::string        section = "Boundary " + std::to_string(id);
+            std::vector<std::string> names   = boundary_data;
+            for (const LawEntry &entry : entries_of(friction_laws()))
+              names.push_back(entry.name);
+            for (const std::string &name : names)
               add(section + '/' + name, [&, id = id](const std::string &text) {
                 return data.over_boundary(text, id);
               });

@@ -14,51 +14,50 @@ namespace Viscoplastic
 
 
 
-    /// Throws unless the entry is there.
-    template <typename Choice>
+    /// Throws unless the entry is there. The first of the choices stands for
+    /// nothing.
     void
     require_given(const types::boundary_id id,
                   const std::string       &name,
-                  const Choice             choice)
+                  const bool               is_given,
+                  std::string              choices)
     {
-      if (choice != Choice::not_given)
-        return;
-      // What comes first stands for nothing.
-      std::string       names = choices(choice);
-      const std::size_t last  = names.rfind('|');
-      names.replace(last, 1, " or ");
-      names.erase(0, names.find('|') + 1);
-      AssertThrow(false,
+      choices.replace(choices.rfind('|'), 1, " or ");
+      choices.erase(0, choices.find('|') + 1);
+      AssertThrow(is_given,
                   ExcMessage(
                     "'" + entry(id, name) + "' is missing; it must be " +
-                    Utilities::replace_in_string(names, "|", ", ") + "."));
+                    Utilities::replace_in_string(choices, "|", ", ") + "."));
     }
 
 
 
     /// The contact law that is given, or that of the friction law in the paper.
-    ContactLaw
+    const ContactLaw *
     contact_law_of(const types::boundary_id id, const BoundaryParameters &given)
     {
-      const ContactLaw law        = given.contact_law;
-      const bool       is_coulomb = given.friction_law == FrictionLaw::coulomb;
-      const auto refuse = [&](const bool when, const std::string &reason) {
+      using Kind                  = ContactLaw::Kind;
+      const bool follows_pressure = given.friction_law->follows_pressure();
+      if (given.contact_law == nullptr)
+        return find_named(contact_laws(),
+                          follows_pressure ? "given normal stress" :
+                                             "bilateral");
+      const ContactLaw &law = *given.contact_law;
+      const auto refuse     = [&](const bool when, const std::string &reason) {
         AssertThrow(!when,
                     ExcMessage("'" + entry(id, "Contact law") + "' is " +
-                               name_of(law) + ", but " + reason));
+                               law.name + ", but " + reason));
       };
-      refuse(law == ContactLaw::bilateral && is_coulomb,
-             "'Friction law' = coulomb needs a pressure: that of unilateral "
-             "contact, or a given normal stress.");
-      refuse(law == ContactLaw::given_stress && !is_coulomb,
+      refuse(law.kind == Kind::bilateral && follows_pressure,
+             "'Friction law' = " + given.friction_law->name +
+               " needs a pressure: that of unilateral contact, or a given "
+               "normal stress.");
+      refuse(law.kind == Kind::given_stress && !follows_pressure,
              "with 'Friction law' other than coulomb that is a load: use the "
              "role traction with a 'Pressure'.");
-      refuse((law == ContactLaw::unilateral || law == ContactLaw::compliance) &&
-               given.friction_law == FrictionLaw::glued,
+      refuse(law.kind == Kind::unilateral && given.friction_law->is_glued,
              "what is glued cannot open; leave one of them out.");
-      return law != ContactLaw::not_given ? law :
-             is_coulomb                   ? ContactLaw::given_stress :
-                                            ContactLaw::bilateral;
+      return &law;
     }
 
 
@@ -139,8 +138,7 @@ namespace Viscoplastic
 
 
 
-    /// Whether the entry @p name means something for the role and the friction
-    /// law.
+    /// Whether the entry @p name means something for the role and the laws.
     template <int dim>
     bool
     uses(const BoundaryCondition<dim> &condition, const std::string &name)
@@ -153,27 +151,21 @@ namespace Viscoplastic
         return condition.role == BoundaryRole::traction ||
                (condition.role == BoundaryRole::displacement &&
                 !condition.prescribes_all());
-      if (name == "Friction bound")
-        return condition.friction_law == FrictionLaw::tresca;
-      if (name == "Friction coefficient")
-        return condition.friction_law == FrictionLaw::coulomb;
       if (name == "Slip rate factor")
         return condition.has_friction();
       if (name == "Normal stress")
-        return condition.contact_law == ContactLaw::given_stress;
+        return condition.has_given_stress();
       if (name == "Gap" || name == "Foundation normal")
         return condition.is_unilateral();
-      if (name == "Compliance" || name == "Compliance exponent")
-        return condition.gives_way();
       if (name == "Foundation displacement")
         return is_contact &&
                (condition.is_bilateral() || condition.is_unilateral());
       if (name == "Against")
-        return is_contact && condition.contact_law != ContactLaw::given_stress;
+        return is_contact && !condition.has_given_stress();
       if (name == "Foundation motion")
         return condition.has_friction() || condition.is_glued();
-      Assert(false, ExcInternalError());
-      return false;
+      return is_contact && (condition.contact_law->has(name) ||
+                            condition.friction_law->has(name));
     }
 
 
@@ -205,11 +197,9 @@ namespace Viscoplastic
                       (condition.solution && name == "Normal stress"),
                     ExcMessage(
                       "'" + entry(condition.id, name) + "' is missing; the " +
-                      (name == "Normal stress" ?
-                         "contact law given normal stress" :
-                       name == "Compliance" ?
-                         "contact law normal compliance" :
-                         "friction law " + name_of(condition.friction_law)) +
+                      (condition.friction_law->has(name) ?
+                         "friction law " + condition.friction_law->name :
+                         "contact law " + condition.contact_law->name) +
                       " needs it."));
         if (is_given(text))
           result.emplace(text, entry(condition.id, name));
@@ -232,15 +222,22 @@ namespace Viscoplastic
       std::optional<Expression<dim>>
       stiffness(const std::string &name, const std::string &text) const
       {
-        auto result = scalar(name, text);
-        AssertThrow(!result || !result->depends_on_time(),
-                    ExcMessage("'" + entry(condition.id, name) +
-                               "' depends on time; springs do not become "
-                               "stiffer or softer, let the traction depend on "
-                               "time."));
-        if (result && result->is_zero())
-          result.reset();
+        auto result = nonzero_scalar(name, text);
+        refuse_time(result, name, "springs do", "traction");
         return result;
+      }
+
+      void
+      refuse_time(const std::optional<Expression<dim>> &datum,
+                  const std::string                    &name,
+                  const std::string                    &what,
+                  const std::string                    &instead) const
+      {
+        AssertThrow(!datum || !datum->depends_on_time(),
+                    ExcMessage("'" + entry(condition.id, name) +
+                               "' depends on time; " + what +
+                               " not become stiffer or softer, let the " +
+                               instead + " depend on time."));
       }
 
       std::optional<VectorExpression<dim>>
@@ -291,15 +288,18 @@ namespace Viscoplastic
     , role(parameters.role)
     , solution(solution)
   {
-    require_given(id, "Role", role);
+    require_given(id, "Role", role != BoundaryRole::not_given, choices(role));
     if (role == BoundaryRole::contact)
       {
         friction_law = parameters.friction_law;
-        require_given(id, "Friction law", friction_law);
+        require_given(id,
+                      "Friction law",
+                      friction_law != nullptr,
+                      names_of(friction_laws()));
         contact_law = contact_law_of(id, parameters);
         AssertThrow(!(solution && is_unilateral()),
                     ExcMessage("'" + entry(id, "Contact law") + "' is " +
-                               name_of(contact_law) +
+                               contact_law->name +
                                ", for which 'Exact solution/Data' = solution "
                                "makes no data; use 'Data' = scene."));
       }
@@ -330,9 +330,9 @@ namespace Viscoplastic
       read.stiffness("Normal stiffness", parameters.normal_stiffness);
     tangential_stiffness =
       read.stiffness("Tangential stiffness", parameters.tangential_stiffness);
-    friction_bound = read.scalar("Friction bound", parameters.friction_bound);
-    friction_coefficient =
-      read.scalar("Friction coefficient", parameters.friction_coefficient);
+    for (const LawEntry &one : entries_of(friction_laws()))
+      if (auto datum = read.scalar(one.name, parameters.of_laws.at(one.name)))
+        friction_data.push_back(std::move(*datum));
     slip_rate_factor.emplace(parameters.slip_rate_factor,
                              entry(id, "Slip rate factor"),
                              "v");
@@ -349,14 +349,23 @@ namespace Viscoplastic
                 ExcMessage("'" + entry(id, "Slip rate factor") +
                            "' is given, for which 'Exact solution/Data' = "
                            "solution makes no data; use 'Data' = scene."));
-    normal_stress    = read.scalar("Normal stress", parameters.normal_stress);
-    given_gap        = read.nonzero_scalar("Gap", parameters.gap);
-    given_compliance = read.scalar("Compliance", parameters.compliance);
-    compliance_exponent = parameters.compliance_exponent;
-    AssertThrow(!given_compliance || !given_compliance->depends_on_time(),
-                ExcMessage("'" + entry(id, "Compliance") +
-                           "' depends on time; a foundation does not become "
-                           "stiffer or softer, let the gap depend on time."));
+    normal_stress = read.scalar("Normal stress", parameters.normal_stress);
+    given_gap     = read.nonzero_scalar("Gap", parameters.gap);
+    std::vector<double> numbers;
+    for (const LawEntry &one : entries_of(contact_laws()))
+      if (const std::string &text = parameters.of_laws.at(one.name);
+          one.is_number())
+        {
+          if (uses(*this, one.name))
+            numbers.push_back(Utilities::string_to_double(text));
+        }
+      else if (auto k = read.scalar(one.name, text))
+        {
+          read.refuse_time(k, one.name, "a foundation does", "gap");
+          given_compliance = std::move(k);
+        }
+    if (gives_way())
+      pressure_law = contact_law->make(numbers);
     if (is_given(parameters.foundation_normal))
       {
         normal          = given_direction<dim>(parameters.foundation_normal,
@@ -394,18 +403,21 @@ namespace Viscoplastic
     compare("Normal stiffness", parameters.normal_stiffness, "0");
     compare("Tangential stiffness", parameters.tangential_stiffness, "0");
     const bool is_contact = role == BoundaryRole::contact;
-    if (!is_contact && parameters.contact_law > ContactLaw::bilateral)
+    if (!is_contact && parameters.contact_law != nullptr &&
+        parameters.contact_law->kind != ContactLaw::Kind::bilateral)
       names.emplace_back("Contact law");
     compare("Against", parameters.against, "");
     compare("Gap", parameters.gap, "0");
     compare("Foundation normal", parameters.foundation_normal, "");
-    compare("Compliance", parameters.compliance, "0");
-    if (parameters.compliance_exponent != 1. && !gives_way())
-      names.push_back("Compliance exponent");
-    if (!is_contact && parameters.friction_law > FrictionLaw::none)
+    for (const LawEntry &one : entries_of(contact_laws()))
+      compare(one.name,
+              parameters.of_laws.at(one.name),
+              one.is_number() ? one.default_value : "0");
+    if (!is_contact && parameters.friction_law != nullptr &&
+        parameters.friction_law->name != "none")
       names.emplace_back("Friction law");
-    compare("Friction bound", parameters.friction_bound, "0");
-    compare("Friction coefficient", parameters.friction_coefficient, "0");
+    for (const LawEntry &one : entries_of(friction_laws()))
+      compare(one.name, parameters.of_laws.at(one.name), "0");
     compare("Slip rate factor", parameters.slip_rate_factor, "1");
     compare("Normal stress", parameters.normal_stress, "0");
     compare("Foundation displacement", parameters.foundation_displacement, "0");

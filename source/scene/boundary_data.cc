@@ -35,19 +35,43 @@ namespace Viscoplastic
   double
   BoundaryCondition<dim>::bound(const Point<dim> &x, const double t) const
   {
-    const bool   is_tresca = friction_law == FrictionLaw::tresca;
-    const double factor    = not_negative(
-      (is_tresca ? friction_bound : friction_coefficient)->value(x, t),
-      id,
-      is_tresca ? "Friction bound" : "Friction coefficient",
-      "x = (",
-      x,
-      "), t = ",
-      t);
     // rho = g, (5.22), or mu |S|, (5.6).
-    return is_tresca || has_computed_pressure() ?
-             factor :
-             factor * std::abs(normal_stress->value(x, t));
+    const double given = sum_of_friction(x, t, /* of_pressure = */ false);
+    return has_given_stress() ? given + friction_coefficient(x, t) *
+                                          std::abs(normal_stress->value(x, t)) :
+                                given;
+  }
+
+
+
+  template <int dim>
+  double
+  BoundaryCondition<dim>::friction_coefficient(const Point<dim> &x,
+                                               const double      t) const
+  {
+    return sum_of_friction(x, t, /* of_pressure = */ true);
+  }
+
+
+
+  template <int dim>
+  double
+  BoundaryCondition<dim>::sum_of_friction(const Point<dim> &x,
+                                          const double      t,
+                                          const bool        of_pressure) const
+  {
+    double sum = 0.;
+    for (unsigned int i = 0; i < friction_data.size(); ++i)
+      if (const LawEntry &entry = friction_law->entries[i];
+          entry.of_pressure == of_pressure)
+        sum += not_negative(friction_data[i].value(x, t),
+                            id,
+                            entry.name,
+                            "x = (",
+                            x,
+                            "), t = ",
+                            t);
+    return sum;
   }
 
 
@@ -71,8 +95,12 @@ namespace Viscoplastic
   double
   BoundaryCondition<dim>::compliance(const Point<dim> &x) const
   {
-    return not_negative(
-      given_compliance->value(x, 0.), id, "Compliance", "x = (", x, ")");
+    return not_negative(given_compliance->value(x, 0.),
+                        id,
+                        contact_law->entries.front().name,
+                        "x = (",
+                        x,
+                        ")");
   }
 
 
@@ -81,7 +109,7 @@ namespace Viscoplastic
   void
   BoundaryCondition<dim>::derive_data()
   {
-    if (solution && contact_law == ContactLaw::given_stress)
+    if (solution && has_given_stress())
       normal_stress.emplace(
         [solution = solution, normal = normal](const Point<dim> &x,
                                                const double      t) {
@@ -157,8 +185,8 @@ namespace Viscoplastic
     add(normal_stiffness);
     add(tangential_stiffness);
     add(foundation_displacement);
-    add(friction_bound);
-    add(friction_coefficient);
+    for (const Expression<dim> &datum : friction_data)
+      result.push_back(&datum);
     add(normal_stress);
     add(pressure);
     for (const auto *vector : {&traction, &foundation_motion})

@@ -123,7 +123,7 @@ namespace Viscoplastic
         const std::string name =
           Utilities::trim(parameters.boundaries.at(id).against);
         if (name.empty() || condition.role != BoundaryRole::contact ||
-            condition.contact_law == ContactLaw::given_stress)
+            condition.has_given_stress())
           continue;
         const std::string entry =
           "'Boundary " + std::to_string(id) + "/Against' = " + excerpt(name);

@@ -11,41 +11,17 @@ namespace Viscoplastic
 {
   namespace
   {
-    struct ContactEffect
+    /// What a contact law and a friction law are together.
+    std::string
+    in_words(const ContactLaw &contact, const FrictionLaw &friction)
     {
-      ContactLaw  contact_law;
-      FrictionLaw friction_law;
-      const char *words;
-    };
-
-    const ContactEffect contact_effects[] = {
-      {ContactLaw::bilateral,
-       FrictionLaw::tresca,
-       "bilateral contact with Tresca friction"},
-      {ContactLaw::given_stress,
-       FrictionLaw::coulomb,
-       "Coulomb friction with given normal stress"},
-      {ContactLaw::bilateral,
-       FrictionLaw::none,
-       "frictionless bilateral contact"},
-      {ContactLaw::unilateral,
-       FrictionLaw::tresca,
-       "unilateral contact with Tresca friction"},
-      {ContactLaw::unilateral,
-       FrictionLaw::coulomb,
-       "unilateral contact with Coulomb friction of the computed pressure"},
-      {ContactLaw::unilateral,
-       FrictionLaw::none,
-       "frictionless unilateral contact"},
-      {ContactLaw::compliance,
-       FrictionLaw::tresca,
-       "normal compliance with Tresca friction"},
-      {ContactLaw::compliance,
-       FrictionLaw::coulomb,
-       "normal compliance with Coulomb friction of the computed pressure"},
-      {ContactLaw::compliance,
-       FrictionLaw::none,
-       "frictionless normal compliance"}};
+      if (friction.entries.empty())
+        return "frictionless " + contact.words;
+      if (contact.kind == ContactLaw::Kind::given_stress)
+        return friction.words + " with " + contact.words;
+      return contact.words + " with " + friction.words +
+             (friction.follows_pressure() ? " of the computed pressure" : "");
+    }
 
 
 
@@ -112,11 +88,12 @@ namespace Viscoplastic
     const auto add = [&](const std::string &name, const auto &holds) {
       add_on_boundaries(*this, name, holds, result);
     };
-    for (const ContactEffect &effect : contact_effects)
-      add(effect.words, [&effect](const auto &b) {
-        return b.contact_law == effect.contact_law &&
-               b.friction_law == effect.friction_law;
-      });
+    for (const ContactLaw &contact : contact_laws())
+      for (const FrictionLaw &friction : friction_laws())
+        if (!friction.is_glued)
+          add(in_words(contact, friction), [&](const auto &b) {
+            return b.contact_law == &contact && b.friction_law == &friction;
+          });
     add("friction that depends on the slip rate",
         [](const auto &b) { return b.slip_rate_factor.has_value(); });
     add("glued contact", [](const auto &b) { return b.is_glued(); });

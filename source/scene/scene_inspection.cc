@@ -155,10 +155,10 @@ namespace Viscoplastic
             "'Boundary " + std::to_string(id) + "/" + name +
             "' is not used by the role " + name_of(given.role) +
             (condition.role == BoundaryRole::contact ?
-               (given.contact_law == ContactLaw::not_given ?
+               (given.contact_law == nullptr ?
                   "" :
-                  " with the contact law " + name_of(given.contact_law)) +
-                 " with the friction law " + name_of(given.friction_law) :
+                  " with the contact law " + given.contact_law->name) +
+                 " with the friction law " + given.friction_law->name :
                "") +
             ".");
       }

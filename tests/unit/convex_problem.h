@@ -397,7 +397,8 @@ namespace Viscoplastic::Testing
             problem.first() + problem.face.first_dof[point.node];
           if (kind == 2)
             point.compliance.add(A(first, first) * stiffness(),
-                                 1. + 0.5 * random.integer(0, 2));
+                                 power_pressure(1. +
+                                                0.5 * random.integer(0, 2)));
         }
       else
         problem.bounds.push_back(

@@ -98,7 +98,8 @@ TEST(CoulombNode, ObeysTheLaw)
       Random           random(seed);
       NormalCompliance compliance;
       if (seed % 4 == 3)
-        compliance.add(random.logarithmic(1e-2, 1e4), random.uniform(1., 2.));
+        compliance.add(random.logarithmic(1e-2, 1e4),
+                       power_pressure(random.uniform(1., 2.)));
       const CoulombNode node = random_node(random, 1 + seed % 2, compliance);
       const double      p    = coulomb_pressure(node);
       EXPECT_LT(violation(node, p), 1e-11 * (1. + p)) << "seed " << seed;

@@ -89,7 +89,7 @@ namespace
         if (nodes == Nodes::soft_corners && n_pieces == 2)
           problem.face.points[problem.face.points.size() - random.integer(1, 2)]
             .compliance.add(random.logarithmic(0.1, 100.),
-                            1. + 0.5 * random.integer(0, 2));
+                            power_pressure(1. + 0.5 * random.integer(0, 2)));
       }
     fill_at_random(problem, random, random.integer(2, 6), 0., 1.);
     const unsigned int tie = seed % 2 == 1 ? random.integer(0, 4) : 9;

@@ -93,7 +93,8 @@ namespace
                   if (point.is_obstacle)
                     for (unsigned int piece = 0; piece < 1 + seed % 2; ++piece)
                       point.compliance.add(random.logarithmic(0.1, 1e6),
-                                           1. + 0.5 * (seed % 4) + piece);
+                                           power_pressure(
+                                             1. + 0.5 * (seed % 4) + piece));
                 const Result result = solve(problem, condensed, tolerance);
                 n_iterations += result.report.iterations;
 
@@ -356,7 +357,7 @@ namespace
     point.map         = {{Tensor<1, 3>({-1., 0., 0.}), Tensor<1, 3>()}};
     face.points.push_back(point);
     point.map[0] = Tensor<1, 3>({0., -1., 0.});
-    point.compliance.add(0.416666666667, 1.);
+    point.compliance.add(0.416666666667, power_pressure(1.));
     face.points.push_back(point);
     face.has_obstacles = true;
     face.first_dof.push_back(3);
@@ -386,5 +387,53 @@ namespace
     fit_multipliers(face, residual, state, of_points);
     of_points -= residual;
     EXPECT_LT(of_points.l2_norm(), 1e-12 * residual.l2_norm());
+  }
+
+
+
+  TEST(Obstacles, PressureLaws)
+  {
+    unsigned int n_laws = 0;
+    for (const ContactLaw &law : contact_laws())
+      for (const double factor : {1., 1.3, 2.})
+        {
+          if (!law.make)
+            continue;
+          SCOPED_TRACE(law.name + " with numbers times " +
+                       std::to_string(factor));
+          ++n_laws;
+          std::vector<double> numbers;
+          for (const LawEntry &entry : law.entries)
+            if (entry.is_number())
+              numbers.push_back(factor * std::stod(entry.default_value));
+          const PressureLaw pressure = law.make(numbers);
+          double            last     = 0.;
+          for (const double k : {1e-3, 1., 1e5})
+            for (const double w : {1e-3, 0.1, 0.7, 2.})
+              {
+                const double h = 1e-4 * w, p = pressure.force(k, w);
+                EXPECT_GT(p, 0.);
+                EXPECT_NEAR((pressure.force(k, w + h) -
+                             pressure.force(k, w - h)) /
+                              (2. * h),
+                            pressure.slope(k, w),
+                            1e-7 * p / w);
+                EXPECT_NEAR((pressure.energy(k, w + h) -
+                             pressure.energy(k, w - h)) /
+                              (2. * h),
+                            p,
+                            1e-7 * p);
+                EXPECT_NEAR(pressure.penetration(k, p), w, 1e-12 * w);
+                EXPECT_LT(std::abs(pressure.energy(k, 1e-9 * w)), 1e-8 * p * w);
+                if (w > 1e-3)
+                  {
+                    EXPECT_GE(pressure.slope(k, w), last * (1. - 1e-12));
+                  }
+                last = pressure.slope(k, w);
+                // Twice the factor, twice the pressure.
+                EXPECT_NEAR(pressure.force(2. * k, w), 2. * p, 1e-13 * p);
+              }
+        }
+    EXPECT_GE(n_laws, 3u);
   }
 } // namespace

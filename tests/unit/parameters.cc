@@ -290,9 +290,9 @@ namespace
   TEST(Boundary, FrictionBounds)
   {
     BoundaryParameters entries;
-    entries.role           = BoundaryRole::contact;
-    entries.friction_law   = FrictionLaw::tresca;
-    entries.friction_bound = "0.5 - x + t";
+    entries.role                      = BoundaryRole::contact;
+    entries.friction_law              = find_named(friction_laws(), "tresca");
+    entries.of_laws["Friction bound"] = "0.5 - x + t";
     const BoundaryCondition<2> tresca(2, entries);
     EXPECT_TRUE(tresca.is_bilateral());
     EXPECT_TRUE(tresca.has_friction());
@@ -303,9 +303,9 @@ namespace
                    "it must not be negative.");
 
     // mu |S|: the sign of S does not matter, that of mu does.
-    entries.friction_law         = FrictionLaw::coulomb;
-    entries.friction_coefficient = "0.5 - x";
-    entries.normal_stress        = "-3";
+    entries.friction_law = find_named(friction_laws(), "coulomb");
+    entries.of_laws["Friction coefficient"] = "0.5 - x";
+    entries.normal_stress                   = "-3";
     const BoundaryCondition<2> coulomb(3, entries);
     EXPECT_FALSE(coulomb.is_bilateral());
     EXPECT_FALSE(coulomb.bound_depends_on_time());

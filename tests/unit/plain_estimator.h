@@ -238,7 +238,7 @@ namespace Viscoplastic::Testing
           if (condition.is_glued())
             break;
           residual = tangential(traction + multiplier_density);
-          if (condition.friction_law == FrictionLaw::coulomb)
+          if (condition.has_given_stress())
             residual += (traction * condition.normal -
                          condition.normal_stress->value(x, t)) *
                         condition.normal;

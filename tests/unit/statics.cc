@@ -284,7 +284,8 @@ namespace
               x[0]    = at;
               down[1] = -1.;
               beam.add_node(x, down, 0., 0.);
-              beam.face.points.back().compliance.add(1e-9, exponent);
+              beam.face.points.back().compliance.add(1e-9,
+                                                     power_pressure(exponent));
             }
           const std::vector<double> load{0., -4e-3, 1e-3};
           ContactState              contact(std::vector<double>(4, -depth));

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <deal.II/base/mpi.h>
+#include <deal.II/base/symmetric_tensor.h>
 #include <deal.II/base/tensor.h>
 #include <deal.II/lac/vector.h>
 
@@ -154,6 +155,12 @@ namespace Viscoplastic
     }
   };
 
+
+  inline Tensor<2, 3>
+  identity()
+  {
+    return unit_symmetric_tensor<3>();
+  }
 
   /// slip = map x of one point; the second entry is zero for one tangent.
   Tensor<1, 2>

@@ -1,22 +1,23 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
-#include <cmath>
+#include <viscoplastic_contact/laws/contact_laws.h>
+
 #include <vector>
 
 namespace Viscoplastic
 {
-  /// Normal compliance at a node (Oden and Martins, Comput. Methods Appl. Mech.
-  /// Eng. 52, 1985): the force p(w), the sum of k w_+^m over the pieces that
-  /// meet there, at the penetration w = u_n - g.
+  /// A foundation that gives way at a node: the force p(w), the sum of those of
+  /// the pieces that meet there, at the penetration w = u_n - g.
   class NormalCompliance
   {
   public:
-    /// Add a piece: k = int c phi >= 0 in force per length^m, and m >= 1.
+    /// Add a piece that presses by @p law with k = @p factor, the integral of
+    /// that of the law times the basis function of the node.
     void
-    add(const double stiffness, const double exponent)
+    add(const double factor, const PressureLaw &law)
     {
-      pieces.push_back({stiffness, exponent});
+      pieces.push_back({factor, law});
     }
 
     /// Whether the obstacle is rigid: no compliant piece has been added.
@@ -32,7 +33,7 @@ namespace Viscoplastic
       double sum = 0.;
       if (w > 0.)
         for (const Piece &piece : pieces)
-          sum += piece.stiffness * std::pow(w, piece.exponent);
+          sum += piece.law.force(piece.factor, w);
       return sum;
     }
 
@@ -43,8 +44,7 @@ namespace Viscoplastic
       double sum = 0.;
       if (w > 0.)
         for (const Piece &piece : pieces)
-          sum +=
-            piece.exponent * piece.stiffness * std::pow(w, piece.exponent - 1.);
+          sum += piece.law.slope(piece.factor, w);
       return sum;
     }
 
@@ -55,8 +55,7 @@ namespace Viscoplastic
       double sum = 0.;
       if (w > 0.)
         for (const Piece &piece : pieces)
-          sum += piece.stiffness * std::pow(w, piece.exponent + 1.) /
-                 (piece.exponent + 1.);
+          sum += piece.law.energy(piece.factor, w);
       return sum;
     }
 
@@ -78,7 +77,8 @@ namespace Viscoplastic
   private:
     struct Piece
     {
-      double stiffness, exponent;
+      double      factor;
+      PressureLaw law;
     };
     std::vector<Piece> pieces;
   };

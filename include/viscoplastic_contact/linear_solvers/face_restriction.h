@@ -30,13 +30,13 @@ namespace Viscoplastic
       return contact_layout;
     }
 
-    /// Add a piece to the normal compliance of an obstacle.
+    /// Add a piece to the foundation of an obstacle, see NormalCompliance.
     void
     add_compliance(const unsigned int point,
-                   const double       stiffness,
-                   const double       exponent)
+                   const double       factor,
+                   const PressureLaw &law)
     {
-      contact_layout.points[point].compliance.add(stiffness, exponent);
+      contact_layout.points[point].compliance.add(factor, law);
     }
 
     /// The entries of face vectors on all ranks.
@@ -85,15 +85,26 @@ namespace Viscoplastic
     /// Apply the projectors of a truncation, node by node; nothing happens if
     /// it has none.
     void
-    project(const FaceTruncation &truncation, DistributedVector &v) const;
+    project(const FaceTruncation &truncation, DistributedVector &v) const
+    {
+      if (!truncation.projector.empty())
+        apply(truncation, &FaceTruncation::project, v);
+    }
 
     /// The tilts of a truncation, as FaceTruncation applies them.
     void
-    tilt_equations(const FaceTruncation &truncation,
-                   DistributedVector    &v) const;
+    tilt_equations(const FaceTruncation &truncation, DistributedVector &v) const
+    {
+      if (!truncation.tilt.empty())
+        apply(truncation, &FaceTruncation::tilt_equations, v);
+    }
 
     void
-    tilt_motions(const FaceTruncation &truncation, DistributedVector &v) const;
+    tilt_motions(const FaceTruncation &truncation, DistributedVector &v) const
+    {
+      if (!truncation.tilt.empty())
+        apply(truncation, &FaceTruncation::tilt_motions, v);
+    }
 
     /// y := y + R^T springs R x.
     void
@@ -102,6 +113,17 @@ namespace Viscoplastic
                 DistributedVector       &y) const;
 
   private:
+    template <typename Function>
+    void
+    apply(const FaceTruncation &truncation,
+          const Function        function,
+          DistributedVector    &v) const
+    {
+      Vector<double> on_face = gather(v);
+      (truncation.*function)(contact_layout, on_face);
+      set(on_face, v);
+    }
+
     ContactLayout                        contact_layout;
     std::vector<types::global_dof_index> global_dofs;
     std::vector<unsigned int>            owned_positions;

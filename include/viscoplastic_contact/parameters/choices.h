@@ -74,38 +74,6 @@ namespace Viscoplastic
     return "not given|clamped|displacement|traction|free|symmetry|contact";
   }
 
-  /// The law of contact along the normal of a boundary piece.
-  enum class ContactLaw
-  {
-    not_given,
-    bilateral,    // u_nu = d
-    given_stress, // sigma_nu = S
-    unilateral,   // u_n <= g + d, sigma_n <= 0, and one of them with equality
-    compliance    // sigma_n = -c (u_n - g - d)_+^m
-  };
-
-  inline const char *
-  choices(ContactLaw)
-  {
-    return "not given|bilateral|given normal stress|unilateral|normal "
-           "compliance";
-  }
-
-  enum class FrictionLaw
-  {
-    not_given,
-    none,
-    tresca,  // rho = g, (5.22)
-    coulomb, // rho = mu |S|, (5.6), or mu p of contact that opens
-    glued    // no slip whatever the force: rho = infinity
-  };
-
-  inline const char *
-  choices(FrictionLaw)
-  {
-    return "not given|none|tresca|coulomb|glued";
-  }
-
   /// The origin of loads and boundary values in a scene with an exact solution.
   enum class DataSource
   {

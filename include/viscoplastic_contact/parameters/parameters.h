@@ -5,6 +5,7 @@
 
 #include <viscoplastic_contact/parameters/choices.h>
 
+#include <map>
 #include <string>
 #include <vector>
 
@@ -12,6 +13,8 @@ namespace Viscoplastic
 {
   using namespace dealii;
 
+  struct ContactLaw;
+  struct FrictionLaw;
   struct LawDescription;
 
   // One struct for each subsection of the parameter file: defaults, the help
@@ -131,19 +134,18 @@ namespace Viscoplastic
     BoundaryRole role = BoundaryRole::not_given;
     std::string  displacement, traction, pressure;
     std::string  normal_stiffness, tangential_stiffness;
-    ContactLaw   contact_law = ContactLaw::not_given;
-    std::string  against;
-    std::string  gap;
-    std::string  foundation_normal;
-    std::string  compliance;
-    double       compliance_exponent = 1.;
-    FrictionLaw  friction_law        = FrictionLaw::not_given;
-    std::string  friction_bound;
-    std::string  friction_coefficient;
-    std::string  slip_rate_factor = "1";
-    std::string  normal_stress;
-    std::string  foundation_displacement = "0";
-    std::string  foundation_motion;
+    /// Null where they are not given.
+    const ContactLaw  *contact_law  = nullptr;
+    const FrictionLaw *friction_law = nullptr;
+    /// The entries of contact laws and of friction laws.
+    std::map<std::string, std::string> of_laws;
+    std::string                        against, gap, foundation_normal;
+    std::string                        slip_rate_factor = "1";
+    std::string                        normal_stress;
+    std::string                        foundation_displacement = "0";
+    std::string                        foundation_motion;
+
+    BoundaryParameters();
 
     void
     declare(ParameterHandler &prm);

@@ -6,9 +6,11 @@
 #include <deal.II/base/types.h>
 
 #include <viscoplastic_contact/base/expression.h>
+#include <viscoplastic_contact/laws/contact_laws.h>
 #include <viscoplastic_contact/parameters/parameters.h>
 #include <viscoplastic_contact/scene/exact_solution.h>
 
+#include <algorithm>
 #include <array>
 #include <optional>
 #include <string>
@@ -37,8 +39,9 @@ namespace Viscoplastic
     /// The boundary of another body that is the foundation. Displacements and
     /// the gap below are then relative to it.
     std::optional<types::boundary_id> against;
-    ContactLaw                        contact_law  = ContactLaw::not_given;
-    FrictionLaw                       friction_law = FrictionLaw::none;
+    /// Role contact; null in others.
+    const ContactLaw  *contact_law  = nullptr;
+    const FrictionLaw *friction_law = nullptr;
 
     /// Role displacement: the given components; empty ones are free.
     std::array<std::optional<Expression<dim>>, dim> displacement;
@@ -52,18 +55,18 @@ namespace Viscoplastic
     std::optional<Expression<dim>> normal_stiffness, tangential_stiffness;
     /// The gap g of unilateral contact; absent where identically zero.
     std::optional<Expression<dim>> given_gap;
-    /// c (stress per length^m) and m of normal compliance.
+    /// Where the foundation gives way, the factor k(x) of its pressure law.
     std::optional<Expression<dim>> given_compliance;
-    double                         compliance_exponent = 1.;
+    PressureLaw                    pressure_law;
     /// d of bilateral contact, u_nu = d, or added to the gap; absent where
     /// identically zero.
     std::optional<Expression<dim>> foundation_displacement;
     /// The motion w of the foundation that slip is relative to; absent at rest.
     std::optional<VectorExpression<dim>> foundation_motion;
-    /// The friction bound g of the law tresca, a stress.
-    std::optional<Expression<dim>> friction_bound;
-    /// mu and the normal stress S of the law coulomb.
-    std::optional<Expression<dim>> friction_coefficient, normal_stress;
+    /// The entries of the friction law, in its order.
+    std::vector<Expression<dim>> friction_data;
+    /// S of the law given normal stress.
+    std::optional<Expression<dim>> normal_stress;
     /// The factor of friction bounds as a function of the slip rate; absent
     /// where it is one.
     std::optional<Expression<1>> slip_rate_factor;
@@ -84,24 +87,31 @@ namespace Viscoplastic
     is_bilateral() const
     {
       return role == BoundaryRole::symmetry ||
-             contact_law == ContactLaw::bilateral;
+             is_of_kind(ContactLaw::Kind::bilateral);
     }
 
-    /// Whether contact opens and closes: unilateral, rigid or compliant.
+    /// Whether sigma_nu = S is prescribed here.
+    bool
+    has_given_stress() const
+    {
+      return is_of_kind(ContactLaw::Kind::given_stress);
+    }
+
+    /// Whether contact opens and closes, on a foundation that is rigid or not.
     bool
     is_unilateral() const
     {
-      return contact_law == ContactLaw::unilateral || gives_way();
+      return is_of_kind(ContactLaw::Kind::unilateral);
     }
 
-    /// Whether the foundation is compliant (normal compliance).
+    /// Whether the foundation is compliant.
     bool
     gives_way() const
     {
-      return contact_law == ContactLaw::compliance;
+      return contact_law != nullptr && contact_law->make;
     }
 
-    /// c of normal compliance. Throws ExcMessage where it is negative.
+    /// The factor of its pressure law. Throws ExcMessage where it is negative.
     double
     compliance(const Point<dim> &x) const;
 
@@ -109,7 +119,7 @@ namespace Viscoplastic
     bool
     has_computed_pressure() const
     {
-      return is_unilateral() && friction_law == FrictionLaw::coulomb;
+      return is_unilateral() && friction_law->follows_pressure();
     }
 
     /// Whether the friction bound is a given function of x and t, bound().
@@ -138,8 +148,7 @@ namespace Viscoplastic
     bool
     has_friction() const
     {
-      return friction_law == FrictionLaw::tresca ||
-             friction_law == FrictionLaw::coulomb;
+      return friction_law != nullptr && !friction_law->entries.empty();
     }
 
     /// Whether the friction bound is zero by its formula, everywhere and
@@ -147,15 +156,17 @@ namespace Viscoplastic
     bool
     friction_vanishes() const
     {
-      return (friction_bound && friction_bound->is_zero()) ||
-             (friction_coefficient && friction_coefficient->is_zero());
+      return has_friction() &&
+             std::all_of(friction_data.begin(),
+                         friction_data.end(),
+                         [](const auto &datum) { return datum.is_zero(); });
     }
 
     /// Whether all of u is prescribed here: glued_displacement().
     bool
     is_glued() const
     {
-      return friction_law == FrictionLaw::glued;
+      return friction_law != nullptr && friction_law->is_glued;
     }
 
     /// Whether a traction, pressure or normal stress is given.
@@ -245,24 +256,36 @@ namespace Viscoplastic
     std::vector<std::string>
     unused_entries(const BoundaryParameters &parameters) const;
 
-    /// The friction bound rho(x,t): g, or mu |S|, or of a computed pressure mu.
-    /// Throws ExcMessage where it is negative.
+    /// The friction bound rho(x,t) without that of a computed pressure p, and
+    /// the coefficient mu(x,t) of the latter: rho + mu p. Throw ExcMessage
+    /// where an entry is negative.
     double
     bound(const Point<dim> &x, const double t) const;
+
+    double
+    friction_coefficient(const Point<dim> &x, const double t) const;
 
     /// The factor f(v) of the friction bound at the slip rate v >= 0. Throws
     /// ExcMessage where it is negative.
     double
     bound_factor(const double slip_rate) const;
 
-    /// Whether bound() or gap() depend on time.
+    bool
+    friction_depends_on_time() const
+    {
+      return std::any_of(friction_data.begin(),
+                         friction_data.end(),
+                         [](const auto &datum) {
+                           return datum.depends_on_time();
+                         }) ||
+             (normal_stress && normal_stress->depends_on_time());
+    }
+
+    /// Whether friction or gap() depend on time.
     bool
     bound_depends_on_time() const
     {
-      return (friction_bound && friction_bound->depends_on_time()) ||
-             (friction_coefficient &&
-              friction_coefficient->depends_on_time()) ||
-             (normal_stress && normal_stress->depends_on_time()) ||
+      return friction_depends_on_time() ||
              (is_unilateral() &&
               ((given_gap && given_gap->depends_on_time()) ||
                (foundation_displacement &&
@@ -270,6 +293,18 @@ namespace Viscoplastic
     }
 
   private:
+    bool
+    is_of_kind(const ContactLaw::Kind kind) const
+    {
+      return contact_law != nullptr && contact_law->kind == kind;
+    }
+
+    /// The sum of the entries of friction, of_pressure or not.
+    double
+    sum_of_friction(const Point<dim> &x,
+                    const double      t,
+                    const bool        of_pressure) const;
+
     /// Whether the traction is sigma nu of the exact solution.
     bool
     has_derived_traction() const

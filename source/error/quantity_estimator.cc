@@ -6,59 +6,65 @@ namespace Viscoplastic
 {
   namespace
   {
-    /// How much faster errors of the stress relax than the stress itself: the
-    /// exponent of a power law, 1 of a linear one. Collective.
+    /// Tangents of creep serve until the compliance E^-1 + T dG/dsigma of today
+    /// would differ by this, as a mean over the body.
+    constexpr double largest_change = 0.1;
+    /// The exponent n of the law (see QuantityEstimator::Creep) and int |s|.
+    /// Collective.
     template <int dim>
-    double
-    nonlinearity(const StressSpace<dim> &stress_space,
-                 const State<dim>       &state,
-                 const FlowRate         &rate)
+    std::pair<double, double>
+    creep_of(const StressSpace<dim> &stress_space,
+             const State<dim>       &state,
+             const FlowRate         &rate)
     {
       std::vector<SymmetricTensor<2, 3>> strains(stress_space.n_samples);
-      double                             largest = 0.; // squared |G|/|sigma|
-      std::size_t                        i       = 0;
+      double      largest = 0., sum = 0.; // squared |G|/|s|, int |s|
+      std::size_t i = 0;
       for (std::size_t c = 0; c < stress_space.n_cells(); ++c)
         {
           const Stiffness &stiffness = stress_space.moduli(c);
           stress_space.strains(c, state.u.begin(), strains.data());
           for (unsigned int s = 0; s < stress_space.n_samples; ++s, ++i)
             {
-              const double stress = stiffness.complementary_square(
-                deviator(stiffness.stress(strains[s]) + state.z[i]));
-              if (stress > 0.)
+              const SymmetricTensor<2, 3> deviatoric =
+                deviator(stiffness.stress(strains[s]) + state.z[i]);
+              const double square = stiffness.complementary_square(deviatoric);
+              sum += stress_space.weight(c, s) * deviatoric.norm();
+              if (square > 0.)
                 largest =
                   std::max(largest,
                            stiffness.complementary_square(rate.rate[i]) /
-                             stress);
+                             square);
             }
         }
-      return rate.relaxation_rate /
-             std::sqrt(
-               Utilities::MPI::max(largest, stress_space.space.communicator));
+      const MPI_Comm comm = stress_space.space.communicator;
+      return {rate.relaxation_rate /
+                std::sqrt(Utilities::MPI::max(largest, comm)),
+              Utilities::MPI::sum(sum, comm)};
     }
 
 
 
-    /// How far rates differ, relative to the first ones: int |G' - G|/int |G|.
+    /// int |G' - G| and int |G|, of the rates @p from, G, and @p to.
     /// Collective.
     template <int dim>
-    double
+    std::array<double, 2>
     change(const StressSpace<dim>   &stress_space,
            const IrreversibleStress &from,
            const IrreversibleStress &to)
     {
-      double      sums[] = {0., 0.};
-      std::size_t i      = 0;
+      std::array<double, 2> sums{};
+      std::size_t           i = 0;
       for (std::size_t c = 0; c < stress_space.n_cells(); ++c)
         for (unsigned int s = 0; s < stress_space.n_samples; ++s, ++i)
           {
             sums[0] += stress_space.weight(c, s) * (to[i] - from[i]).norm();
             sums[1] += stress_space.weight(c, s) * from[i].norm();
           }
-      Utilities::MPI::sum(ArrayView<const double>(sums),
+      Utilities::MPI::sum(ArrayView<const double>(sums.data(), 2),
                           stress_space.space.communicator,
-                          ArrayView<double>(sums));
-      return sums[0] > 0. ? sums[0] / sums[1] : 0.;
+                          ArrayView<double>(sums.data(), 2));
+      return sums;
     }
 
 
@@ -111,7 +117,7 @@ namespace Viscoplastic
   Vector<double>
   QuantityEstimator<dim>::products_of_creep(const State<dim> &state,
                                             const FlowRate   &rate,
-                                            const double      creep_time,
+                                            const Creep      &creep,
                                             const CoulombLaw *law,
                                             Vector<double>   &sides) const
   {
@@ -120,16 +126,20 @@ namespace Viscoplastic
     // After a thousand relaxation times the body is as good as incompressible.
     // To half a power of two, so that linear laws have few matrices.
     const double longest = 1e3 / rate.relaxation_rate,
-                 time    = std::min(creep_time, std::max(state.t, longest)),
+                 time    = std::min(creep.time, std::max(state.t, longest)),
                  k       = std::exp2(
                    0.5 * std::floor(2. * std::log2(std::min(time, longest))));
     const auto now = discretization.laws.at(state.t, state.history);
-    // What rates have changed since the last tangents is in the remainder.
+    // What they miss of tangents of today is in the remainder.
+    const auto has_changed = [&] {
+      const auto [difference, size] =
+        change(stress_space, linearized->rate_slope, rate.rate);
+      return k * difference >
+             largest_change * (creep.stress / creep.exponent + k * size);
+    };
     bool is_new = false;
     if (!linearized || k != linearized->k ||
-        (!tangent->is_constant &&
-         change(stress_space, linearized->rate_slope, rate.rate) >
-           largest_change))
+        (!tangent->is_constant && has_changed()))
       {
         linearized.reset(); // until there are tangents
         is_new = tangent->linearize(state.u, state.z, now, k);
@@ -280,11 +290,139 @@ namespace Viscoplastic
 
 
   template <int dim>
+  double
+  QuantityEstimator<dim>::assess_mesh(const CoulombLaw    *law,
+                                      EvaluatedState<dim> &end) const
+  {
+    const Discretization<dim> &d        = discretization;
+    const State<dim>          &state    = end.state;
+    const ErrorEstimate       &errors   = end.errors;
+    QuantityEstimate          &estimate = end.errors.quantity;
+    const QuantityOfInterest  &quantity = *d.scene().quantity;
+    const DualSolution<dim>   &dual     = dual_of_step.solution;
+    const auto                 size_of  = [&](const Vector<double> &parts) {
+      if (parts.size() == 0) // on all ranks
+        return 0.;
+      const double here[] = {parts.mean_value() * parts.size(),
+                             parts.l1_norm()};
+      double       sums[2];
+      Utilities::MPI::sum(ArrayView<const double>(here),
+                          d.space.communicator,
+                          ArrayView<double>(sums));
+      return std::max(std::abs(sums[0]), least_share * sums[1]);
+    };
+    Vector<double> sides =
+      boundary_defects.missing_sides(state, dual.cartesian);
+    double mesh = 0., boundary = size_of(sides);
+    if (dual.norm > 0. || dual_problem.pieces_meet())
+      {
+        Creep creep{errors.creep_time, 0., 0.};
+        if (tangent && end.rate)
+          std::tie(creep.exponent, creep.stress) =
+            creep_of(d.stress_space, state, *end.rate);
+        if (!dual_of_step.residuals)
+          dual_of_step.residuals = space_estimator.residuals_of(dual);
+        const Vector<double> &of_dual  = dual_of_step.residuals->squares;
+        Vector<double>        products = space_estimator.multiply(
+          state, end.forces, *dual_of_step.residuals, creep.exponent);
+        dual_problem.add_at_meetings(state, products);
+        Vector<double>      indicators(products);
+        std::vector<double> sums(3, 0.);
+        const auto          add_up = [&] {
+          sums.assign(3, 0.);
+          for (unsigned int c = 0; c < indicators.size(); ++c)
+            {
+              sums[0] += indicators[c];
+              sums[1] += of_dual[c];
+              sums[2] += safety * std::abs(indicators[c]);
+            }
+          Utilities::MPI::sum(sums, d.space.communicator, sums);
+        };
+        add_up();
+        // Forces forget what has crept, but nothing is known of the signs then.
+        estimate.space_of_creep = 0.;
+        if (quantity.is_force() && errors.energy_norm > 0.)
+          estimate.space_of_creep =
+            std::min(1., errors.creep_path / errors.energy_norm) * sums[2];
+        const double crept  = tangent && end.rate ?
+                                end.rate->relaxation_rate * errors.creep_time :
+                                0.;
+        const bool   creeps = crept > elastic;
+        // Residuals do not know what mean dilatation leaves out of pressures.
+        if (creeps || (d.mean_dilatation && dual.norm > 0.))
+          {
+            const double of_residuals = sums[0];
+            if (creeps)
+              {
+                Vector<double> of_sides;
+                indicators =
+                  products_of_creep(state, *end.rate, creep, law, of_sides);
+                if (const double size = size_of(of_sides); size > boundary)
+                  {
+                    boundary = size;
+                    sides    = std::move(of_sides);
+                  }
+              }
+            else
+              indicators =
+                space_estimator.multiply_recovered(state,
+                                                   dual,
+                                                   elastic_tangents(
+                                                     d.stress_space),
+                                                   {1., {}},
+                                                   dual_of_step.recovered);
+            dual_problem.add_at_meetings(state, indicators);
+            add_up();
+            if (creeps)
+              estimate.space_of_creep =
+                std::max(estimate.space_of_creep,
+                         std::min(1., crept) * least_share * sums[2]);
+            if (std::abs(of_residuals) > std::abs(sums[0]))
+              {
+                indicators = products;
+                add_up();
+              }
+          }
+        for (double &indicator : indicators)
+          indicator = safety * std::abs(indicator);
+        mesh                    = dual_problem.sign() * sums[0];
+        estimate.dual_norm      = dual.norm;
+        estimate.dual_error     = std::sqrt(sums[1]);
+        estimate.unsigned_space = sums[2];
+        if (end.space_estimate.squared_indicators.size() > 0)
+          end.space_estimate.squared_indicators = std::move(indicators);
+      }
+    Vector<double> held =
+      boundary_defects.held_friction(state, quantity, dual.cartesian);
+    boundary += size_of(held);
+    for (const Vector<double> *const parts : {&sides, &held})
+      if (Vector<double> &indicators = end.space_estimate.squared_indicators;
+          indicators.size() > 0 && parts->size() > 0)
+        for (unsigned int c = 0; c < indicators.size(); ++c)
+          indicators[c] += std::abs((*parts)[c]);
+    const Vector<double> &of_geometry = end.space_estimate.geometry;
+    double                geometry    = 0.;
+    if (of_geometry.size() > 0) // on all ranks
+      {
+        geometry = std::sqrt(
+          Utilities::MPI::sum(of_geometry.l1_norm(), d.space.communicator));
+        Vector<double> &indicators = end.space_estimate.squared_indicators;
+        if (indicators.size() > 0 && geometry > 0.)
+          indicators.add(dual.norm / geometry, of_geometry);
+      }
+    estimate.of_boundary = boundary + geometry * estimate.dual_norm;
+    return mesh;
+  }
+
+
+
+  template <int dim>
   void
-  QuantityEstimator<dim>::assess(BulkSolver                &solver,
-                                 const SlipDefects         *slip_defects,
-                                 const EvaluatedState<dim> &accepted,
-                                 EvaluatedState<dim>       &end) const
+  QuantityEstimator<dim>::assess(BulkSolver                  &solver,
+                                 const SlipDefects           *slip_defects,
+                                 const std::optional<double> &growth,
+                                 const EvaluatedState<dim>   &accepted,
+                                 EvaluatedState<dim>         &end) const
   {
     const Discretization<dim> &d        = discretization;
     const State<dim>          &state    = end.state;
@@ -317,125 +455,29 @@ namespace Viscoplastic
           nothing * std::max(dual.norm * errors.energy_norm,
                              dual_problem.size_of_parts(state, end.forces)))
       estimate.value = 0.;
-    const auto size_of = [&](const Vector<double> &parts) {
-      if (parts.size() == 0) // on all ranks
-        return 0.;
-      const double here[] = {parts.mean_value() * parts.size(),
-                             parts.l1_norm()};
-      double       sums[2];
-      Utilities::MPI::sum(ArrayView<const double>(here),
-                          d.space.communicator,
-                          ArrayView<double>(sums));
-      return std::max(std::abs(sums[0]), least_share * sums[1]);
-    };
-    Vector<double> sides =
-      boundary_defects.missing_sides(state, dual.cartesian);
-    double mesh = 0., time = 0., boundary = size_of(sides);
-    if (dual.norm > 0. || dual_problem.pieces_meet())
+    // A state that has hardly changed has the errors of the one before, in
+    // proportion.
+    double mesh = 0., time = 0.;
+    if (growth)
       {
-        const double memory = tangent && end.rate ?
-                                nonlinearity(d.stress_space, state, *end.rate) :
-                                0.;
-        if (!dual_of_step.residuals)
-          dual_of_step.residuals = space_estimator.residuals_of(dual);
-        const Vector<double> &of_dual  = dual_of_step.residuals->squares;
-        Vector<double>        products = space_estimator.multiply(
-          state, end.forces, *dual_of_step.residuals, memory);
-        dual_problem.add_at_meetings(state, products);
-        Vector<double>      indicators(products);
-        std::vector<double> sums(3, 0.);
-        const auto          add_up = [&] {
-          sums.assign(3, 0.);
-          for (unsigned int c = 0; c < indicators.size(); ++c)
-            {
-              sums[0] += indicators[c];
-              sums[1] += of_dual[c];
-              sums[2] += safety * std::abs(indicators[c]);
-            }
-          Utilities::MPI::sum(sums, d.space.communicator, sums);
-        };
-        add_up();
-        // Forces forget what has crept, but nothing is known of the signs then.
-        estimate.space_of_creep = 0.;
-        if (quantity.is_force() && errors.energy_norm > 0.)
-          estimate.space_of_creep =
-            std::min(1., errors.creep_path / errors.energy_norm) * sums[2];
-        const double crept  = tangent && end.rate ?
-                                end.rate->relaxation_rate * errors.creep_time :
-                                0.;
-        const bool   creeps = crept > elastic;
-        // Residuals do not know what mean dilatation leaves out of pressures.
-        if (creeps || (d.mean_dilatation && dual.norm > 0.))
-          {
-            const double of_residuals = sums[0];
-            if (creeps)
-              {
-                Vector<double> crept;
-                indicators = products_of_creep(
-                  state, *end.rate, errors.creep_time, linearized, crept);
-                if (const double size = size_of(crept); size > boundary)
-                  {
-                    boundary = size;
-                    sides    = std::move(crept);
-                  }
-              }
-            else
-              indicators =
-                space_estimator.multiply_recovered(state,
-                                                   dual,
-                                                   elastic_tangents(
-                                                     d.stress_space),
-                                                   {1., {}},
-                                                   dual_of_step.recovered);
-            dual_problem.add_at_meetings(state, indicators);
-            add_up();
-            if (creeps)
-              estimate.space_of_creep =
-                std::max(estimate.space_of_creep,
-                         std::min(1., crept) * least_share * sums[2]);
-            if (std::abs(of_residuals) > std::abs(sums[0]))
-              {
-                indicators = products;
-                add_up();
-              }
-          }
-        for (double &indicator : indicators)
-          indicator = safety * std::abs(indicator);
-        mesh                    = dual_problem.sign() * sums[0];
+        mesh = *growth * (before.space_correction - before.settled_space);
+        estimate.space_of_creep = *growth * before.space_of_creep;
+        estimate.unsigned_space = *growth * before.unsigned_space;
+        estimate.of_boundary    = *growth * before.of_boundary;
         estimate.dual_norm      = dual.norm;
-        estimate.dual_error     = std::sqrt(sums[1]);
-        estimate.unsigned_space = sums[2];
-        if (d.scene().has_viscosity()) // collective
-          {
-            DistributedVector load = d.space.owned_vector();
-            add_irreversible_load(d.stress_space,
-                                  quantity.is_force() ? state.remembered_error :
-                                                        state.time_error,
-                                  load);
-            time = dual_problem.sign() * (load * dual.w);
-          }
-        if (end.space_estimate.squared_indicators.size() > 0)
-          end.space_estimate.squared_indicators = std::move(indicators);
+        estimate.dual_error     = before.dual_error;
       }
-    Vector<double> held =
-      boundary_defects.held_friction(state, quantity, dual.cartesian);
-    boundary += size_of(held);
-    for (const Vector<double> *const parts : {&sides, &held})
-      if (Vector<double> &indicators = end.space_estimate.squared_indicators;
-          indicators.size() > 0 && parts->size() > 0)
-        for (unsigned int c = 0; c < indicators.size(); ++c)
-          indicators[c] += std::abs((*parts)[c]);
-    const Vector<double> &of_geometry = end.space_estimate.geometry;
-    double                geometry    = 0.;
-    if (of_geometry.size() > 0) // on all ranks
+    else
+      mesh = assess_mesh(linearized, end);
+    if (dual.norm > 0. && d.scene().has_viscosity()) // collective
       {
-        geometry = std::sqrt(
-          Utilities::MPI::sum(of_geometry.l1_norm(), d.space.communicator));
-        Vector<double> &indicators = end.space_estimate.squared_indicators;
-        if (indicators.size() > 0 && geometry > 0.)
-          indicators.add(dual.norm / geometry, of_geometry);
+        DistributedVector load = d.space.owned_vector();
+        add_irreversible_load(d.stress_space,
+                              quantity.is_force() ? state.remembered_error :
+                                                    state.time_error,
+                              load);
+        time = dual_problem.sign() * (load * dual.w);
       }
-    estimate.of_boundary      = boundary + geometry * estimate.dual_norm;
     estimate.space_correction = estimate.settled_space + mesh;
     estimate.time_correction  = estimate.settled_time + time;
     // Signs that happen to cancel at one time do not at others.

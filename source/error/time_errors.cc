@@ -209,7 +209,7 @@ namespace Viscoplastic
             is_uniform =
               law && law->has_constant_tangents() && !now.varies_in_space(c);
             if (law == nullptr)
-              relaxation = identity_tensor<3>();
+              relaxation = {};
             else if (is_uniform && (relaxes || fades))
               relaxation =
                 error_relaxation(*law, {}, {}, k, *stiffness, now.point(c, 0));
@@ -381,7 +381,7 @@ namespace Viscoplastic
       const ViscoplasticLaw               *law       = nullptr;
       const Stiffness                     *stiffness = nullptr;
       std::optional<SymmetricTensor<4, 3>> fading;
-      SymmetricTensor<4, 3>                relaxation;
+      ErrorRelaxation                      relaxation;
       bool is_uniform = false, remembers = false, needs_stress = false;
       std::vector<SymmetricTensor<2, 3>> strains;
       // Of a sample:

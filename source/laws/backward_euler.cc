@@ -251,7 +251,7 @@ namespace Viscoplastic
 
 
 
-  SymmetricTensor<4, 3>
+  ErrorRelaxation
   error_relaxation(const ViscoplasticLaw       &law,
                    const SymmetricTensor<2, 3> &stress,
                    const SymmetricTensor<2, 3> &strain,
@@ -262,14 +262,13 @@ namespace Viscoplastic
     if (const auto factors = radial_factors(law, stress, k, stiffness, point))
       {
         const auto &[a, b, s] = *factors;
-        return transversal_tensor(1. / (1. + a),
-                                  1. / 3.,
-                                  (a - b) / ((1. + a) * (1. + b)),
-                                  s);
+        return {1. / (1. + a), (a - b) / ((1. + a) * (1. + b)), s, {}};
       }
-    return invert(
-      identity_tensor<3>() -
-      k * law.step_tangents(stress, strain, k, stiffness, point).stress);
+    ErrorRelaxation result;
+    result.any =
+      invert(identity_tensor<3>() -
+             k * law.step_tangents(stress, strain, k, stiffness, point).stress);
+    return result;
   }
 
 

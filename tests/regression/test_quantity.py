@@ -593,8 +593,9 @@ class LongCreep(TestCase):
 
 
 class KeptTangents(TestCase):
-    """Tangents of creep serve while rates change by no more than a tenth, also in a run
-    that goes on from a checkpoint."""
+    """Tangents of creep serve while their compliances change by less than a tenth, and
+    the mesh part of an estimate while little happens, also in a run that goes on from a
+    checkpoint."""
 
     SCENE = {
         **of("point0_x"),

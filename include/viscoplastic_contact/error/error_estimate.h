@@ -133,6 +133,9 @@ namespace Viscoplastic
     /// The sum of k |G| of all steps, in the same norm; and the time in which
     /// the last |G| alone makes that.
     double creep_path = 0., creep_time = 0.;
+    /// How far the steps since the space estimate was made have moved the
+    /// state, relative to it: change_of_step().
+    double since_estimate = 0.;
 
     /// Write to, or read from, an archive; but for what is of step control
     /// alone, which each step makes anew.
@@ -143,7 +146,7 @@ namespace Viscoplastic
       ErrorParts::exchange(archive);
       quantity.exchange(archive);
       archive &swing &swing_share &time_indicator &velocity_variation
-        &energy_norm &velocity_square &creep_path;
+        &energy_norm &velocity_square &creep_path &since_estimate;
     }
   };
 

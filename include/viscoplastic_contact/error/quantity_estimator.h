@@ -84,8 +84,6 @@ namespace Viscoplastic
     /// In bodies that creep, the least ratio of the estimate to the sum of
     /// absolute contributions: cancellation beyond that is not trusted.
     static constexpr double least_share = 0.25;
-    /// Tangents of creep are those of rates that differ by no more than this.
-    static constexpr double largest_change = 0.1;
 
     /// A solver for the matrix of tangents, until the next one is asked for,
     /// and whether that is another matrix than the last time.
@@ -104,12 +102,14 @@ namespace Viscoplastic
     /// Add the quantity, its errors and the indicators to the state at the end
     /// of a step, whose estimate in the energy norm is complete. @p solver: for
     /// the matrix of a(.,.). @p slip_defects: of the step, if there are any.
-    /// Collective. Throws ExcMessage.
+    /// @p growth: how the mesh part goes on from that of @p accepted, if it is
+    /// not estimated anew. Collective. Throws ExcMessage.
     void
-    assess(BulkSolver                &solver,
-           const SlipDefects         *slip_defects,
-           const EvaluatedState<dim> &accepted,
-           EvaluatedState<dim>       &end) const;
+    assess(BulkSolver                  &solver,
+           const SlipDefects           *slip_defects,
+           const std::optional<double> &growth,
+           const EvaluatedState<dim>   &accepted,
+           EvaluatedState<dim>         &end) const;
 
     /// What is kept from step to step.
     struct Memory
@@ -148,13 +148,31 @@ namespace Viscoplastic
                      const DualSolution<dim> &dual,
                      QuantityEstimate        &estimate) const;
 
+    /// Set the parts of the estimate that are of the mesh, and the indicators;
+    /// returns the error of the mesh with its sign. Collective.
+    double
+    assess_mesh(const CoulombLaw *law, EvaluatedState<dim> &end) const;
+
+    /// How a body creeps.
+    struct Creep
+    {
+      /// ErrorEstimate::creep_time.
+      double time;
+      /// How much faster errors of the stress relax than the stress itself: the
+      /// exponent n of a power law, 1 of a linear one.
+      double exponent;
+      /// int |s| of the deviators s of stresses. Compliances without and with
+      /// creep are as |s|/n to |s|/n + T |G|.
+      double stress;
+    };
+
     /// What the errors of rates have done to the quantity by the end of a
-    /// step, by active cell, with ErrorEstimate::creep_time; and the missing
-    /// sides with the dual solution of creep. Collective.
+    /// step, by active cell; and the missing sides with the dual solution of
+    /// creep. Collective.
     Vector<double>
     products_of_creep(const State<dim> &state,
                       const FlowRate   &rate,
-                      const double      creep_time,
+                      const Creep      &creep,
                       const CoulombLaw *law,
                       Vector<double>   &sides) const;
 

@@ -28,7 +28,30 @@ namespace Viscoplastic
     /// The squared share of each active cell by which the mesh is refined;
     /// empty in scenes on a fixed mesh.
     Vector<double> squared_indicators;
+
+    /// Take the estimate in proportion to the state.
+    void
+    scale(const double factor)
+    {
+      total *= factor;
+      recovery *= factor;
+      squared_indicators *= factor * factor;
+    }
   };
+
+
+
+  /// How far a step moves a state, relative to its end: the larger of the
+  /// changes of strain and stress in their energy norms, and beside them twice
+  /// the share of contact points that begin or cease to stick or to touch. Not
+  /// a number where there is nothing to be relative to. Collective.
+  template <int dim>
+  double
+  change_of_step(const Discretization<dim> &discretization,
+                 const State<dim>          &old,
+                 const Forces<dim>         &old_forces,
+                 const State<dim>          &state,
+                 const Forces<dim>         &forces);
 
 
 
@@ -49,6 +72,13 @@ namespace Viscoplastic
     /// Whether a scene asks for any estimate.
     static bool
     is_needed(const Scene<dim> &scene);
+
+    /// Whether estimates have a geometry. The same on all ranks.
+    bool
+    has_curved_contact() const
+    {
+      return residual_estimator && residual_estimator->has_curved_contact();
+    }
 
     /// Collective.
     SpaceEstimate

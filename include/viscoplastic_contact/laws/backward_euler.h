@@ -136,8 +136,26 @@ namespace Viscoplastic
                    const Stiffness             &stiffness);
 
   /// (I - k dG/dsigma)^-1: what relaxation in a step leaves of an error of z at
-  /// a given strain. In closed form for radial flow in isotropic bodies.
-  SymmetricTensor<4, 3>
+  /// a given strain. For radial flow in isotropic bodies, as a map alone, since
+  /// it is applied once: deviators times one number, and what is along a
+  /// direction times another one more.
+  struct ErrorRelaxation
+  {
+    double                               of_deviators = 1., more_along = 0.;
+    SymmetricTensor<2, 3>                direction;
+    std::optional<SymmetricTensor<4, 3>> any; // in the place of these
+
+    SymmetricTensor<2, 3>
+    operator*(const SymmetricTensor<2, 3> &error) const
+    {
+      if (any)
+        return *any * error;
+      return error + (of_deviators - 1.) * deviator(error) +
+             more_along * (direction * error) * direction;
+    }
+  };
+
+  ErrorRelaxation
   error_relaxation(const ViscoplasticLaw       &law,
                    const SymmetricTensor<2, 3> &stress,
                    const SymmetricTensor<2, 3> &strain,

@@ -142,6 +142,14 @@ namespace Viscoplastic
            const FlowRate            *old_rate,
            AcceptedStep<dim>         &step);
 
+    /// The energy norm at the end of a step over that before it, in which
+    /// proportion its space estimate is that of the state before: of states
+    /// that have hardly moved since one has been made.
+    /// Collective.
+    std::optional<double>
+    growth_since_estimate(const EvaluatedState<dim> &accepted,
+                          EvaluatedState<dim>       &end) const;
+
     /// The data of a step. Collective.
     StepProblem<dim>
     make_problem(const EvaluatedState<dim> &accepted,

@@ -66,9 +66,10 @@ namespace Viscoplastic
   ///
   ///     sum_c f'_c . e_c = (R + R_z)(w) - (R + R_z)(w'),
   ///
-  /// of the state that the step starts from; R_z with all of D, also of forces,
-  /// since points go where it moves them. That is settled, too, and ends with
-  /// the bounds of what sticks.
+  /// of the state that the step starts from. Forces, too, begin with all of D
+  /// there, as far as what is held has come to rest, since points have gone
+  /// where it moved them. That is settled, ends with the bounds of what sticks,
+  /// and in forces relaxes as stress does that displacements make.
   template <int dim>
   class QuantityEstimator
   {
@@ -103,11 +104,12 @@ namespace Viscoplastic
 
     /// Add the quantity, its errors and the indicators to the state at the end
     /// of a step, whose estimate in the energy norm is complete. @p solver: for
-    /// the matrix of a(.,.). @p slip_defects: of the step, if there are any.
-    /// Collective. Throws ExcMessage.
+    /// the matrix of a(.,.). @p slip_defects, @p slip_change: of the step, if
+    /// any. Collective. Throws ExcMessage.
     void
     assess(BulkSolver                &solver,
            const SlipDefects         *slip_defects,
+           const SlipChange          &slip_change,
            const EvaluatedState<dim> &accepted,
            EvaluatedState<dim>       &end) const;
 
@@ -170,8 +172,9 @@ namespace Viscoplastic
     hold(BulkSolver                &solver,
          const EvaluatedState<dim> &accepted,
          const ContactState        &contact,
+         const double               rested,
          const CoulombLaw          *law,
-         QuantityEstimate          &estimate) const;
+         ErrorEstimate             &errors) const;
 
     /// A dual solution and what products with it take, made when first asked
     /// for. The solution is that of later steps, too, while the same points

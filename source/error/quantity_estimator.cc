@@ -455,12 +455,7 @@ namespace Viscoplastic
       return std::max(energy_norm * estimate.dual_norm,
                       share * std::abs(estimate.value));
     };
-    // Of forces both are of one error, which points feel when they rest.
-    estimate.time = (quantity.is_force() ?
-                       std::max(std::abs(estimate.time_correction),
-                                least_share * (std::abs(estimate.settled_time) +
-                                               std::abs(time))) :
-                       size_with(estimate.settled_time, time)) +
+    estimate.time = size_with(estimate.settled_time, time) +
                     of_swing(errors.swing, errors.swing_share);
     // What the step has added to slip that turns, or comes to rest.
     const double bound = errors.friction * estimate.dual_norm,

@@ -79,20 +79,13 @@ namespace Viscoplastic
                         discretization.space.communicator,
                         ArrayView<double>(sums));
     const double share = sums[0] > 0. ? sums[1] / sums[0] : 0.;
-    double       space = 0., time = 0.; // of what comes to rest
-    const bool   is_force = discretization.scene().quantity->is_force();
+    // Of what comes to rest, with the error of z that forces remember, and
+    // with all of it.
+    double     space = 0., time = 0., moved = 0.;
+    const bool is_force = discretization.scene().quantity->is_force();
     // Where the run begins points are where they are by definition.
     const bool settles =
       accepted.state.k > 0. && discretization.face->layout().any(has_rest);
-    IrreversibleStress error;
-    if (settles && discretization.scene().has_viscosity())
-      {
-        error = accepted.state.time_error;
-        if (is_force)
-          for (std::size_t i = 0; i < error.size(); ++i)
-            error[i] = rested * error[i] +
-                       (1. - rested) * accepted.state.remembered_error[i];
-      }
     if (settles)
       for (const bool is_held : {false, true})
         {
@@ -111,12 +104,20 @@ namespace Viscoplastic
                                        discretization.space.communicator);
           if (!discretization.scene().has_viscosity())
             continue;
-          DistributedVector load = discretization.space.owned_vector();
-          add_irreversible_load(discretization.stress_space, error, load);
-          time += sign * (load * dual.w);
+          const auto of_error = [&](const IrreversibleStress &error) {
+            DistributedVector load = discretization.space.owned_vector();
+            add_irreversible_load(discretization.stress_space, error, load);
+            return sign * (load * dual.w);
+          };
+          moved += of_error(accepted.state.time_error);
+          if (is_force)
+            time += (is_held ? 1. - rested : 1.) *
+                    of_error(accepted.state.remembered_error);
         }
+    if (!is_force)
+      time = moved;
     estimate.rest_space    = share * before.rest_space + space;
-    estimate.rest_time     = share * before.rest_time + time;
+    estimate.rest_time     = share * before.rest_time + moved;
     const double kept      = is_force ? errors.remembered_share : 1.,
                  gained    = is_force ? errors.remembered_gain : 0.;
     estimate.settled_space = kept * (share * before.settled_space + space) +

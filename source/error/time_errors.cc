@@ -172,11 +172,10 @@ namespace Viscoplastic
         if (is_second)
           state.rate_slope.resize(accepted.rate_slope.size());
         state.remembered_error = accepted.remembered_error;
-        // What comes to rest has moved by all of the error of z.
+        // What comes to rest has made up for it by its slip.
         if (rested > 0.)
-          for (std::size_t i = 0; i < state.remembered_error.size(); ++i)
-            state.remembered_error[i] +=
-              rested * (accepted.time_error[i] - accepted.remembered_error[i]);
+          for (SymmetricTensor<2, 3> &error : state.remembered_error)
+            error *= 1. - rested;
         state.history_error = accepted.history_error;
         state.history_slope.resize(accepted.history_slope.size());
         std::size_t i = 0;
@@ -301,16 +300,16 @@ namespace Viscoplastic
         };
         if (relaxes)
           {
-            SymmetricTensor<2, 3>      &error = state.remembered_error[i];
-            const SymmetricTensor<2, 3> left =
-                                          relaxation * (fades ? all : step),
-                                        relaxed = relaxation * error;
+            SymmetricTensor<2, 3>       &error = state.remembered_error[i];
+            const SymmetricTensor<2, 3> &moves = state.time_error[i];
+            const SymmetricTensor<2, 3>  left =
+              relaxation * (fades ? all : step);
             add_square(of_left, left);
-            add_square(of_remembered, error);
-            add_square(of_kept, relaxed);
+            add_square(of_remembered, moves);
+            add_square(of_kept, relaxation * moves);
             if (growth)
-              add_square(of_gain, relaxation * (*growth * error));
-            error = relaxed + left;
+              add_square(of_gain, relaxation * (*growth * moves));
+            error = relaxation * error + left;
           }
         add_square(of_step, step);
         add_square(of_all_steps, state.time_error[i]);

@@ -66,10 +66,11 @@ namespace Viscoplastic
   ///
   ///     sum_c f'_c . e_c = (R + R_z)(w) - (R + R_z)(w'),
   ///
-  /// of the state that the step starts from. Forces, too, begin with all of D
-  /// there, as far as what is held has come to rest, since points have gone
-  /// where it moved them. That is settled, ends with the bounds of what sticks,
-  /// and in forces relaxes as stress does that displacements make.
+  /// of the state that the step starts from, with all of D, since points go
+  /// where it moves them. That is settled, too, and ends with the bounds of
+  /// what sticks. Of a force what it remembers takes the place of D: slip makes
+  /// up for that, as far as what is held comes to rest. What is settled relaxes
+  /// as stress does, and regains what the law holds of strains that D has made.
   template <int dim>
   class QuantityEstimator
   {

@@ -66,6 +66,7 @@ namespace Viscoplastic
     SlipDefects defects{0.,
                         std::vector<Tensor<1, 2>>(slips.size()),
                         std::vector<Tensor<1, 2>>(slips.size())};
+    double      power = 0., old_power = 0.;
     for (unsigned int p = 0; p < state.n_points(); ++p)
       {
         const Tensor<1, 2> &old = old_state.multiplier[p],
@@ -87,6 +88,11 @@ namespace Viscoplastic
                      old_rate = stable_norm(old_state.slip[p]) / old_k,
                      slope    = 2. * (rate - old_rate) * k / (k + old_k),
                      last     = rate + slope;
+        if (now * old > 0.)
+          {
+            power += force * rate;
+            old_power += force * old_rate;
+          }
         // What is at rest from the beginning may slip by rounding.
         if (last < 0. && rate > 1e-6 * old_rate)
           {
@@ -96,6 +102,41 @@ namespace Viscoplastic
           }
       }
     defects.work = face.sum(defects.work);
+    power        = face.sum(power);
+    old_power    = face.sum(old_power);
+    if (power > 0.)
+      defects.rate_before = std::min(1., old_power / power);
     return defects;
+  }
+
+
+
+  SlipChange
+  slip_change(const ContactLayout &face,
+              const ContactState  &old_state,
+              const ContactState  &state)
+  {
+    double slipping = 0., begun = 0., held = 0., rested = 0.;
+    for (unsigned int p = 0; p < state.n_points(); ++p)
+      if (const double bound = state.bound[p];
+          !face.points[p].is_obstacle && std::isfinite(bound))
+        {
+          const bool slipped = !old_state.sticks[p];
+          (state.sticks[p] ? held : slipping) += bound;
+          if (state.sticks[p] && (slipped || old_state.bound[p] == 0.))
+            rested += bound;
+          else if (!state.sticks[p] &&
+                   !(slipped &&
+                     old_state.multiplier[p] * state.multiplier[p] > 0.))
+            begun += bound;
+        }
+    const auto part = [&face](const double some, const double all) {
+      const double of_all = face.sum(all);
+      return of_all > 0. ? face.sum(some) / of_all : 0.;
+    };
+    SlipChange change;
+    change.begun  = part(begun, slipping);
+    change.rested = part(rested, held);
+    return change;
   }
 } // namespace Viscoplastic

@@ -136,7 +136,8 @@ namespace Viscoplastic
   ErrorEstimator<dim>::assess(const FlowLaws<dim>       &laws,
                               const TimeDefect          &defect,
                               const ContactReport       &report,
-                              const double               turning,
+                              const SlipDefects         *slip_defects,
+                              const SlipChange          &slip_change,
                               const double               missed_work,
                               const Swing               &swing,
                               const bool                 is_fresh,
@@ -155,20 +156,32 @@ namespace Viscoplastic
     estimate.history_adds = !scene.keeps_history_at_points();
     estimate.friction =
       std::sqrt(Utilities::fixed_power<2>(before.friction) +
-                Utilities::fixed_power<2>(friction_calibration) * turning +
+                Utilities::fixed_power<2>(friction_calibration) *
+                  (slip_defects != nullptr ? slip_defects->work : 0.) +
                 2. * missed_work);
     estimate.energy_norm = energy_norm(forces);
     estimate.space       = end.space_estimate.total;
     estimate.algebraic   = report.error;
 
     estimate.creep_path = before.creep_path;
+    estimate.slip_begun = slip_change.begun;
     if (scene.has_viscosity())
       {
         Assert(accepted_rate != nullptr && end.rate,
                ExcMessage("The rates have not been evaluated."));
+        // Where slip has begun G has grown until then only, which is after
+        // the part of the step that its slip has missed.
+        const double onset =
+          slip_defects != nullptr ?
+            0.5 *
+              std::max(0., before.slip_begun + slip_defects->rate_before - 1.) :
+            0.;
         add_defect(laws,
                    defect,
-                   /* has_slope = */ accepted.state.k > 0. && !is_fresh,
+                   /* has_slope = */ accepted.state.k > 0. && !is_fresh &&
+                     before.slip_begun < 0.5,
+                   onset,
+                   slip_change.rested,
                    accepted,
                    *accepted_rate,
                    end);

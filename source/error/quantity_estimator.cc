@@ -420,6 +420,7 @@ namespace Viscoplastic
   void
   QuantityEstimator<dim>::assess(BulkSolver                  &solver,
                                  const SlipDefects           *slip_defects,
+                                 const SlipChange            &slip_change,
                                  const std::optional<double> &growth,
                                  const EvaluatedState<dim>   &accepted,
                                  EvaluatedState<dim>         &end) const
@@ -445,7 +446,12 @@ namespace Viscoplastic
     const std::optional<CoulombLaw> law = law_of_step(accepted.state, state);
     const CoulombLaw *const         linearized = law ? &*law : nullptr;
     if (!is_sum && d.slipping_face())
-      hold(solver, accepted, state.contact, linearized, estimate);
+      hold(solver,
+           accepted,
+           state.contact,
+           slip_change.rested,
+           linearized,
+           end.errors);
     renew(solver, d.matrix, state.contact, linearized, dual_of_step);
     const DualSolution<dim> &dual = dual_of_step.solution;
     // |J| <= a(w, w)^{1/2} a(u, u)^{1/2}; of a force that statics fixes w is a
@@ -509,7 +515,10 @@ namespace Viscoplastic
           add_slip_defects(
             solver, *slip_defects, state.contact, linearized, dual, estimate);
         // What points that are off do to a force relaxes as stress does.
-        const double left = quantity.is_force() ? errors.remembered_share : 1.;
+        const double left =
+          quantity.is_force() && errors.remembered_gain == 0. ?
+            errors.remembered_share :
+            1.;
         estimate.turning *= left;
         estimate.resting *= left;
         estimate.friction =

@@ -50,11 +50,13 @@ namespace Viscoplastic
   QuantityEstimator<dim>::hold(BulkSolver                &solver,
                                const EvaluatedState<dim> &accepted,
                                const ContactState        &contact,
+                               const double               rested,
                                const CoulombLaw          *law,
-                               QuantityEstimate          &estimate) const
+                               ErrorEstimate             &errors) const
   {
-    const QuantityEstimate &before = accepted.errors.quantity;
-    const ContactState     &old    = accepted.state.contact;
+    const QuantityEstimate &before   = accepted.errors.quantity;
+    QuantityEstimate       &estimate = errors.quantity;
+    const ContactState     &old      = accepted.state.contact;
     const auto holds = [&](const ContactState &c, const unsigned int p) {
       return !discretization.face->layout().points[p].is_obstacle &&
              c.sticks[p] && c.bound[p] > 0.;
@@ -76,35 +78,52 @@ namespace Viscoplastic
     Utilities::MPI::sum(ArrayView<const double>(sums),
                         discretization.space.communicator,
                         ArrayView<double>(sums));
-    const double share     = sums[0] > 0. ? sums[1] / sums[0] : 0.;
-    estimate.settled_space = share * before.settled_space;
-    estimate.settled_time  = share * before.settled_time;
+    const double share = sums[0] > 0. ? sums[1] / sums[0] : 0.;
+    // Of what comes to rest, with the error of z that forces remember, and
+    // with all of it.
+    double     space = 0., time = 0., moved = 0.;
+    const bool is_force = discretization.scene().quantity->is_force();
     // Where the run begins points are where they are by definition.
-    if (accepted.state.k == 0. || !discretization.face->layout().any(has_rest))
-      return;
-    for (const bool is_held : {false, true})
-      {
-        const DualSolution<dim> dual =
-          dual_problem.solve(solver, is_held ? held : old, law);
-        if (!(dual.norm > 0.))
-          continue;
-        const double         sign = (is_held ? -1. : 1.) * dual_problem.sign();
-        const Vector<double> parts =
-          space_estimator.multiply(accepted.state,
-                                   accepted.forces,
-                                   space_estimator.residuals_of(dual),
-                                   0.);
-        estimate.settled_space +=
-          sign * Utilities::MPI::sum(parts.mean_value() * parts.size(),
-                                     discretization.space.communicator);
-        if (!discretization.scene().has_viscosity())
-          continue;
-        DistributedVector load = discretization.space.owned_vector();
-        add_irreversible_load(discretization.stress_space,
-                              accepted.state.time_error,
-                              load);
-        estimate.settled_time += sign * (load * dual.w);
-      }
+    const bool settles =
+      accepted.state.k > 0. && discretization.face->layout().any(has_rest);
+    if (settles)
+      for (const bool is_held : {false, true})
+        {
+          const DualSolution<dim> dual =
+            dual_problem.solve(solver, is_held ? held : old, law);
+          if (!(dual.norm > 0.))
+            continue;
+          const double sign = (is_held ? -1. : 1.) * dual_problem.sign();
+          const Vector<double> parts =
+            space_estimator.multiply(accepted.state,
+                                     accepted.forces,
+                                     space_estimator.residuals_of(dual),
+                                     0.);
+          space +=
+            sign * Utilities::MPI::sum(parts.mean_value() * parts.size(),
+                                       discretization.space.communicator);
+          if (!discretization.scene().has_viscosity())
+            continue;
+          const auto of_error = [&](const IrreversibleStress &error) {
+            DistributedVector load = discretization.space.owned_vector();
+            add_irreversible_load(discretization.stress_space, error, load);
+            return sign * (load * dual.w);
+          };
+          moved += of_error(accepted.state.time_error);
+          if (is_force)
+            time += (is_held ? 1. - rested : 1.) *
+                    of_error(accepted.state.remembered_error);
+        }
+    if (!is_force)
+      time = moved;
+    estimate.rest_space    = share * before.rest_space + space;
+    estimate.rest_time     = share * before.rest_time + moved;
+    const double kept      = is_force ? errors.remembered_share : 1.,
+                 gained    = is_force ? errors.remembered_gain : 0.;
+    estimate.settled_space = kept * (share * before.settled_space + space) +
+                             gained * estimate.rest_space;
+    estimate.settled_time =
+      kept * (share * before.settled_time + time) + gained * estimate.rest_time;
   }
 
 

@@ -67,20 +67,19 @@ namespace Viscoplastic
 
 
 
-    /// (1 + k dG/deps E^-1)^-1, what a step leaves of an error of z that makes
-    /// no stress, since strains make up for it: of linear laws that depend on
-    /// the strain. None of others, whose strain stays.
+    /// k dG/deps E^-1 of linear laws that depend on the strain. Where the
+    /// strains make up for an error of z, which makes no stress, a step leaves
+    /// (1 + k dG/deps E^-1)^-1 of it. None of others, whose strain stays.
     std::optional<SymmetricTensor<4, 3>>
-    fading_with_strain(const ViscoplasticLaw &law,
+    growth_with_strain(const ViscoplasticLaw &law,
                        const double           k,
                        const Stiffness       &stiffness,
                        const LawPoint        &point)
     {
       if (!law.has_constant_tangents() || law.radial_flow(0., point))
         return {};
-      const auto tangents = law.tangents({}, {}, stiffness, point);
-      return invert(identity_tensor<3>() +
-                    k * tangents.strain * invert(stiffness.tensor()));
+      return k * law.tangents({}, {}, stiffness, point).strain *
+             invert(stiffness.tensor());
     }
 
 
@@ -118,6 +117,8 @@ namespace Viscoplastic
                    const FlowLaws<dim>       &laws,
                    const TimeDefect          &defect,
                    const bool                 has_slope,
+                   const double               onset,
+                   const double               rested,
                    const EvaluatedState<dim> &old,
                    const FlowRate            &accepted_rate,
                    EvaluatedState<dim>       &end)
@@ -125,6 +126,8 @@ namespace Viscoplastic
         , now(laws.at(end.state.t, old.state.history))
         , defect(defect)
         , has_slope(has_slope)
+        , onset(onset)
+        , rested(rested)
         , is_second(ErrorEstimator<dim>::has_sample_fields(scene)[2])
         , relaxes(ErrorEstimator<dim>::has_sample_fields(scene)[3])
         , has_predictor(defect.second != 0.)
@@ -163,7 +166,11 @@ namespace Viscoplastic
         if (is_second)
           state.rate_slope.resize(accepted.rate_slope.size());
         state.remembered_error = accepted.remembered_error;
-        state.history_error    = accepted.history_error;
+        // What comes to rest has made up for it by its slip.
+        if (rested > 0.)
+          for (SymmetricTensor<2, 3> &error : state.remembered_error)
+            error *= 1. - rested;
+        state.history_error = accepted.history_error;
         state.history_slope.resize(accepted.history_slope.size());
         std::size_t i = 0;
         for (std::size_t c = 0; c < stress_space.n_cells(); ++c)
@@ -186,6 +193,10 @@ namespace Viscoplastic
           sums[of_remembered] > 0. ?
             std::sqrt(sums[of_kept] / sums[of_remembered]) :
             1.;
+        estimate.remembered_gain =
+          sums[of_remembered] > 0. ?
+            std::sqrt(sums[of_gain] / sums[of_remembered]) :
+            0.;
         estimate.remembered_indicator =
           relaxes ? std::sqrt(sums[of_left]) : estimate.time_indicator;
       }
@@ -203,9 +214,11 @@ namespace Viscoplastic
         if (c == 0 || law != last_law || stiffness != last_stiffness ||
             (law && now.varies_in_space(c)))
           {
-            fading =
-              law ? fading_with_strain(*law, k, *stiffness, now.point(c, 0)) :
+            growth =
+              law ? growth_with_strain(*law, k, *stiffness, now.point(c, 0)) :
                     std::nullopt;
+            if (growth)
+              fading = invert(identity_tensor<3>() + *growth);
             is_uniform =
               law && law->has_constant_tangents() && !now.varies_in_space(c);
             if (law == nullptr)
@@ -262,11 +275,15 @@ namespace Viscoplastic
               share * all +
               (1. - share) * (of_history + relaxation * (all - of_history));
           }
+        if (onset > 0. && is_second)
+          carried.z +=
+            onset * accepted.k *
+            (accepted.k * accepted.rate_slope[i] - accepted.k / k * change);
         state.time_error[i] += carried.z + step;
         if (relaxes)
           state.remembered_error[i] += carried.z;
-        if (fading)
-          state.time_error[i] = *fading * state.time_error[i];
+        if (growth)
+          state.time_error[i] = fading * state.time_error[i];
         // Steps are chosen with the slope as the change of slope there.
         if (!has_slope)
           step += defect.second * k * change;
@@ -277,14 +294,16 @@ namespace Viscoplastic
         };
         if (relaxes)
           {
-            SymmetricTensor<2, 3>      &error = state.remembered_error[i];
-            const SymmetricTensor<2, 3> left =
-                                          relaxation * (fades ? all : step),
-                                        relaxed = relaxation * error;
+            SymmetricTensor<2, 3>       &error = state.remembered_error[i];
+            const SymmetricTensor<2, 3> &moves = state.time_error[i];
+            const SymmetricTensor<2, 3>  left =
+              relaxation * (fades ? all : step);
             add_square(of_left, left);
-            add_square(of_remembered, error);
-            add_square(of_kept, fading ? error : relaxed);
-            error = relaxed + left;
+            add_square(of_remembered, moves);
+            add_square(of_kept, relaxation * moves);
+            if (growth)
+              add_square(of_gain, relaxation * (*growth * moves));
+            error = relaxation * error + left;
           }
         add_square(of_step, step);
         add_square(of_all_steps, state.time_error[i]);
@@ -367,7 +386,9 @@ namespace Viscoplastic
       const StressSpace<dim>              &stress_space;
       const typename FlowLaws<dim>::AtTime now;
       const TimeDefect                     defect;
-      const bool has_slope, is_second, relaxes, has_predictor, is_measured;
+      const bool                           has_slope;
+      const double                         onset, rested;
+      const bool                 is_second, relaxes, has_predictor, is_measured;
       const EvaluatedState<dim> &old;
       const State<dim>          &accepted;
       const FlowRate            &accepted_rate;
@@ -380,7 +401,8 @@ namespace Viscoplastic
       // Of a cell:
       const ViscoplasticLaw               *law       = nullptr;
       const Stiffness                     *stiffness = nullptr;
-      std::optional<SymmetricTensor<4, 3>> fading;
+      std::optional<SymmetricTensor<4, 3>> growth;
+      SymmetricTensor<4, 3>                fading;
       ErrorRelaxation                      relaxation;
       bool is_uniform = false, remembers = false, needs_stress = false;
       std::vector<SymmetricTensor<2, 3>> strains;
@@ -399,6 +421,7 @@ namespace Viscoplastic
         of_rate,
         of_remembered,
         of_kept,
+        of_gain,
         n_norms
       };
       std::vector<double> sums = std::vector<double>(n_norms, 0.);
@@ -412,11 +435,14 @@ namespace Viscoplastic
   ErrorEstimator<dim>::add_defect(const FlowLaws<dim>       &laws,
                                   const TimeDefect          &defect,
                                   const bool                 has_slope,
+                                  const double               onset,
+                                  const double               rested,
                                   const EvaluatedState<dim> &old,
                                   const FlowRate            &accepted_rate,
                                   EvaluatedState<dim>       &end) const
   {
-    DefectOfStep<dim>(scene, laws, defect, has_slope, old, accepted_rate, end)
+    DefectOfStep<dim>(
+      scene, laws, defect, has_slope, onset, rested, old, accepted_rate, end)
       .add();
   }
 

@@ -117,6 +117,7 @@ namespace Viscoplastic
       }
     TimerOutput::Scope         phase(timer, "estimate");
     std::optional<SlipDefects> slip_defects;
+    SlipChange                 slip_change;
     double                     missed_work = 0.;
     // Equal at both ends, they may be others in between.
     const Swing swing = swing_of_data(discretization, accepted, end);
@@ -128,15 +129,23 @@ namespace Viscoplastic
     const bool is_after_kink =
       control.has_kink_within(step.time_step.t_old - accepted.state.k,
                               step.time_step.t_old);
-    if (discretization.slipping_face() != nullptr && accepted.state.k > 0. &&
-        accepted.is_solution && accepted.has_slip_rate && !is_after_kink)
-      slip_defects = slip_defects_of_step(*discretization.face, accepted, end);
+    if (discretization.slipping_face() != nullptr)
+      {
+        slip_change = Viscoplastic::slip_change(discretization.face->layout(),
+                                                accepted.state.contact,
+                                                state.contact);
+        if (accepted.state.k > 0. && accepted.is_solution &&
+            accepted.has_slip_rate && !is_after_kink)
+          slip_defects =
+            slip_defects_of_step(*discretization.face, accepted, end);
+      }
     error_estimator->assess(discretization.laws,
                             time_defect(step.is_implicit ?
                                           TimeScheme::backward_euler :
                                           scene.parameters.time.scheme),
                             step.report,
-                            slip_defects ? slip_defects->work : 0.,
+                            slip_defects ? &*slip_defects : nullptr,
+                            slip_change,
                             missed_work,
                             swing,
                             is_after_kink,
@@ -146,6 +155,7 @@ namespace Viscoplastic
     if (quantity_estimator)
       quantity_estimator->assess(solver_of_elasticity().bulk(),
                                  slip_defects ? &*slip_defects : nullptr,
+                                 slip_change,
                                  growth,
                                  accepted,
                                  end);
@@ -241,7 +251,7 @@ namespace Viscoplastic
       return;
     TimerOutput::Scope phase(timer, "estimate");
     quantity_estimator->assess(
-      solver_of_elasticity().bulk(), nullptr, {}, initial, initial);
+      solver_of_elasticity().bulk(), nullptr, {}, {}, initial, initial);
   }
 
 

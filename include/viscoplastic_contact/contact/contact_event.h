@@ -40,6 +40,8 @@ namespace Viscoplastic
     /// rates of both steps, since slip may slow down faster towards its end,
     /// they miss k v_1^2 / (2 (v_0 - v_1)).
     std::vector<Tensor<1, 2>> resting;
+    /// The mean slip rate of the step before over that of this step, at most 1.
+    double rate_before = 0.;
   };
 
   /// @p slips: the slip increments of the step, whose size is @p k, after one
@@ -51,4 +53,20 @@ namespace Viscoplastic
                const std::vector<Tensor<1, 2>> &slips,
                const double                     k,
                const double                     old_k);
+
+  /// How much of the face a step has made slip or come to rest, by bounds.
+  struct SlipChange
+  {
+    /// Of what slips at its end, the part that has been at rest, or has slipped
+    /// the other way.
+    double begun = 0.;
+    /// Of what is held at its end, the part that has slipped, or been off.
+    double rested = 0.;
+  };
+
+  /// Collective.
+  SlipChange
+  slip_change(const ContactLayout &face,
+              const ContactState  &old_state,
+              const ContactState  &state);
 } // namespace Viscoplastic

@@ -71,6 +71,9 @@ namespace Viscoplastic
     /// If the quantity is a sum over the steps: the parts of both corrections
     /// that later steps can no longer change.
     double settled_space = 0., settled_time = 0.;
+    /// The settled parts of a force as they were when points came to rest;
+    /// since then stress has relaxed.
+    double rest_space = 0., rest_time = 0.;
     /// The sum of what the cells contribute to the error of the mesh, without
     /// signs.
     double unsigned_space = 0.;
@@ -95,8 +98,8 @@ namespace Viscoplastic
     {
       ErrorParts::exchange(archive);
       archive &value &space_correction &time_correction &settled_space
-        &settled_time &unsigned_space &space_of_creep &of_boundary &turning
-          &resting &dual_norm &dual_error;
+        &settled_time &rest_space &rest_time &unsigned_space &space_of_creep
+          &of_boundary &turning &resting &dual_norm &dual_error;
     }
   };
 
@@ -120,6 +123,10 @@ namespace Viscoplastic
     /// What the last step has left of the errors of a force before it, as far
     /// as they relax at constant strain.
     double remembered_share = 1.;
+    /// And what stress has regained of it, since the law holds the strain.
+    double remembered_gain = 0.;
+    /// SlipChange::begun of the last step.
+    double slip_begun = 0.;
     /// (sum_j (k_j/3) |du_j - du_{j-1}|^2)^{1/2}, the computable part of
     /// I^k(u')^{1/2}, (5.19); energy^{1/2} time^{-1/2}.
     double velocity_variation = 0.;
@@ -146,7 +153,7 @@ namespace Viscoplastic
       ErrorParts::exchange(archive);
       quantity.exchange(archive);
       archive &swing &swing_share &time_indicator &velocity_variation
-        &energy_norm &velocity_square &creep_path &since_estimate;
+        &energy_norm &velocity_square &creep_path &since_estimate &slip_begun;
     }
   };
 

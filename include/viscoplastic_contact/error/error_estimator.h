@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
+#include <viscoplastic_contact/contact/contact_event.h>
 #include <viscoplastic_contact/contact/contact_report.h>
 #include <viscoplastic_contact/discretization/flow_laws.h>
 #include <viscoplastic_contact/error/evaluated_state.h>
@@ -106,16 +107,17 @@ namespace Viscoplastic
 
     /// Set the estimate and the fields of time errors of the end of a step. Its
     /// forces and space estimate, and with viscosity the rates of both states,
-    /// have been evaluated. @p defect: of the scheme of the step. @p turning:
-    /// the turning_work() of the step; @p missed_work: that of friction bounds
-    /// which it has missed (ContactFace::missed_bounds()); @p swing: the
+    /// have been evaluated. @p defect: of the scheme of the step. @p
+    /// slip_defects: of the step, if any; @p missed_work: that of friction
+    /// bounds which it has missed (ContactFace::missed_bounds()); @p swing: the
     /// swing_of_data() of the step. @p is_fresh: at its beginning data have a
     /// kink, so that G may have one, too. Collective.
     void
     assess(const FlowLaws<dim>       &laws,
            const TimeDefect          &defect,
            const ContactReport       &report,
-           const double               turning,
+           const SlipDefects         *slip_defects,
+           const SlipChange          &slip_change,
            const double               missed_work,
            const Swing               &swing,
            const bool                 is_fresh,
@@ -126,11 +128,15 @@ namespace Viscoplastic
   private:
     /// Add the defect of a step to the field of time errors, and put the norms
     /// into the estimate. @p has_slope: whether the slope of G before the step
-    /// goes on in it. Collective.
+    /// goes on in it. @p onset: how many times the bend of G after the step
+    /// before counts, in which slip has begun. @p rested: the part of the face
+    /// that comes to rest. Collective.
     void
     add_defect(const FlowLaws<dim>       &laws,
                const TimeDefect          &defect,
                const bool                 has_slope,
+               const double               onset,
+               const double               rested,
                const EvaluatedState<dim> &accepted,
                const FlowRate            &accepted_rate,
                EvaluatedState<dim>       &end) const;

@@ -66,9 +66,11 @@ namespace Viscoplastic
   ///
   ///     sum_c f'_c . e_c = (R + R_z)(w) - (R + R_z)(w'),
   ///
-  /// of the state that the step starts from; R_z with all of D, also of forces,
-  /// since points go where it moves them. That is settled, too, and ends with
-  /// the bounds of what sticks.
+  /// of the state that the step starts from, with all of D, since points go
+  /// where it moves them. That is settled, too, and ends with the bounds of
+  /// what sticks. Of a force what it remembers takes the place of D: slip makes
+  /// up for that, as far as what is held comes to rest. What is settled relaxes
+  /// as stress does, and regains what the law holds of strains that D has made.
   template <int dim>
   class QuantityEstimator
   {
@@ -101,12 +103,13 @@ namespace Viscoplastic
 
     /// Add the quantity, its errors and the indicators to the state at the end
     /// of a step, whose estimate in the energy norm is complete. @p solver: for
-    /// the matrix of a(.,.). @p slip_defects: of the step, if there are any.
-    /// @p growth: how the mesh part goes on from that of @p accepted, if it is
-    /// not estimated anew. Collective. Throws ExcMessage.
+    /// the matrix of a(.,.). @p slip_defects, @p slip_change: of the step, if
+    /// any. @p growth: how the mesh part goes on from that of @p accepted, if it
+    /// is not estimated anew. Collective. Throws ExcMessage.
     void
     assess(BulkSolver                  &solver,
            const SlipDefects           *slip_defects,
+           const SlipChange            &slip_change,
            const std::optional<double> &growth,
            const EvaluatedState<dim>   &accepted,
            EvaluatedState<dim>         &end) const;
@@ -188,8 +191,9 @@ namespace Viscoplastic
     hold(BulkSolver                &solver,
          const EvaluatedState<dim> &accepted,
          const ContactState        &contact,
+         const double               rested,
          const CoulombLaw          *law,
-         QuantityEstimate          &estimate) const;
+         ErrorEstimate             &errors) const;
 
     /// A dual solution and what products with it take, made when first asked
     /// for. The solution is that of later steps, too, while the same points

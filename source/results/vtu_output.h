@@ -175,22 +175,25 @@ namespace Viscoplastic
       std::get<2>(range) += label_of_field(scene, std::get<2>(range));
 
     // DataOut's are in the order of active cells.
-    std::vector<std::pair<unsigned int, std::size_t>> order;
+    std::vector<std::pair<unsigned int, unsigned int>> order;
     for (const auto &cell : body.cells)
       order.emplace_back(cell->active_cell_index(), order.size());
     AssertDimension(data_out.patches.size(), order.size());
     std::sort(order.begin(), order.end());
-    result.patches.resize(order.size());
+    result.patches.swap(data_out.patches);
     for (std::size_t p = 0; p < order.size(); ++p)
       {
-        auto &patch       = result.patches[order[p].second];
-        patch             = std::move(data_out.patches[p]);
+        auto &patch       = result.patches[p];
         patch.patch_index = order[p].second;
         // Their numbers are no longer right, and nothing here asks for them.
         std::fill(std::begin(patch.neighbors),
                   std::end(patch.neighbors),
                   numbers::invalid_unsigned_int);
       }
+    // Each swap brings one to its place.
+    for (std::size_t p = 0; p < order.size(); ++p)
+      while (result.patches[p].patch_index != p)
+        result.patches[p].swap(result.patches[result.patches[p].patch_index]);
     return result;
   }
 

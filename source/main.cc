@@ -12,6 +12,8 @@
 #include <viscoplastic_contact/run/scene_as_json.h>
 #include <viscoplastic_contact/run/scene_check.h>
 
+#include <malloc.h>
+
 #include <cctype>
 #include <chrono>
 #include <iostream>
@@ -190,6 +192,10 @@ main(int argc, char *argv[])
 {
   const std::vector<std::string> arguments(argv + 1, argv + argc);
   const bool                     is_single = run_without_mpi_job();
+#ifdef M_ARENA_MAX
+  // The memory in which a thread writes fields is also that of time steps.
+  mallopt(M_ARENA_MAX, 1);
+#endif
 
   CommandLine command_line;
   std::string text, complaint;

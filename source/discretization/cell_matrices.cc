@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <deal.II/base/mpi.h>
-#include <deal.II/dofs/dof_tools.h>
 #include <deal.II/lac/trilinos_sparsity_pattern.h>
 
 #include <viscoplastic_contact/base/types.h>
 #include <viscoplastic_contact/discretization/admissible_space.h>
+
+#include <algorithm>
 
 // The part of AdmissibleSpace that assembles matrices in frames.
 
@@ -16,16 +17,52 @@ namespace Viscoplastic
     TrilinosWrappers::SparsityPattern &pattern) const
   {
     pattern.reinit(owned, owned, relevant, communicator);
-    DoFTools::make_sparsity_pattern(dof_handler,
-                                    pattern,
-                                    hanging_in_frames,
-                                    /* keep_constrained_dofs = */ false,
-                                    Utilities::MPI::this_mpi_process(
-                                      communicator));
+    // Node by node, as the degrees of freedom of one couple with the same ones:
+    // each row is entered once.
+    using Dofs = std::vector<types::global_dof_index>;
+    Dofs              dofs, columns;
+    std::vector<Dofs> nodes_beside(relevant.n_elements() / dim);
+    for (const auto &cell : cells)
+      {
+        dofs.clear();
+        for (const unsigned int v : cell->vertex_indices())
+          {
+            const auto first = cell->vertex_dof_index(v, 0);
+            if (!hanging_cartesian.is_constrained(first))
+              dofs.push_back(first);
+            else
+              for (const auto &parent :
+                   *hanging_cartesian.get_constraint_entries(first))
+                dofs.push_back(parent.first);
+            if (hanging_cartesian.is_constrained(first))
+              for (unsigned int d = 0; d < dim; ++d)
+                pattern.add(first + d, first + d);
+          }
+        for (const auto dof : dofs)
+          {
+            Dofs &beside = nodes_beside[relevant.index_within_set(dof) / dim];
+            beside.insert(beside.end(), dofs.begin(), dofs.end());
+          }
+      }
+    for (std::size_t n = 0; n < nodes_beside.size(); ++n)
+      {
+        Dofs &beside = nodes_beside[n];
+        std::sort(beside.begin(), beside.end());
+        beside.erase(std::unique(beside.begin(), beside.end()), beside.end());
+        columns.clear();
+        for (const auto first : beside)
+          for (unsigned int d = 0; d < dim; ++d)
+            columns.push_back(first + d);
+        for (unsigned int d = 0; d < dim && !columns.empty(); ++d)
+          pattern.add_entries(relevant.nth_index_in_set(n * dim + d),
+                              columns.begin(),
+                              columns.end(),
+                              /* indices_are_sorted = */ true);
+      }
     if (axial)
       {
-        const auto                           n = dof_handler.n_dofs();
-        std::vector<types::global_dof_index> others;
+        const auto n = dof_handler.n_dofs();
+        Dofs       others;
         for (const auto dof : relevant)
           if (dof < n && !hanging_in_frames.is_constrained(dof))
             {
@@ -38,8 +75,6 @@ namespace Viscoplastic
       }
     if (!couplings.empty())
       {
-        std::vector<types::global_dof_index> dofs(
-          dof_handler.get_fe().n_dofs_per_cell());
         FullMatrix<double> none;
         for (const auto &cell : cells)
           {

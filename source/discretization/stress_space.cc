@@ -22,6 +22,32 @@ namespace Viscoplastic
 
 
   template <int dim>
+  std::pair<unsigned int, bool>
+  CellShapes<dim>::add(
+    const typename DoFHandler<dim>::active_cell_iterator &cell)
+  {
+    // Vertices from the first, relative to the diameter and rounded: equal for
+    // translated cells, whatever rounding did to their vertices.
+    constexpr double                   resolution = 1ll << 36;
+    std::array<std::int64_t, key_size> key{};
+    int                                exponent;
+    const double                       diameter = cell->diameter();
+    key[0]         = std::llround(std::frexp(diameter, &exponent) * resolution);
+    key[1]         = exponent;
+    unsigned int i = 2;
+    for (unsigned int v = 1; v < cell->n_vertices(); ++v)
+      for (unsigned int d = 0; d < dim; ++d)
+        key[i++] = std::llround((cell->vertex(v)[d] - cell->vertex(0)[d]) /
+                                diameter * resolution);
+    if (is_of_ring)
+      key.back() = std::llround(cell->vertex(0)[0] / diameter * resolution);
+    const auto [entry, is_new] = number_of.emplace(key, number_of.size());
+    return {entry->second, is_new};
+  }
+
+
+
+  template <int dim>
   StressSpace<dim>::StressSpace(const AdmissibleSpace<dim> &space,
                                 const ElasticModuli<dim>   &moduli,
                                 const bool at_quadrature_points,
@@ -39,21 +65,29 @@ namespace Viscoplastic
                             update_values | update_gradients |
                               update_JxW_values | update_quadrature_points);
     const bool        has_hoops = space.scene.is_axisymmetric();
+    CellShapes<dim>   number_of(space.scene.plane_model());
+    nodes.reserve(space.cells.size() * n_vertices);
+    shapes.reserve(space.cells.size());
     for (const auto &cell : space.cells)
       {
+        for (const unsigned int v : cell->vertex_indices())
+          nodes.push_back(
+            space.relevant.index_within_set(cell->vertex_dof_index(v, 0)));
+        const auto [shape, is_new] = number_of.add(cell);
+        shapes.push_back(shape);
+        if (!is_new)
+          continue;
         fe_values.reinit(cell);
         double volume = 0.;
         for (const unsigned int q : fe_values.quadrature_point_indices())
           volume += fe_values.JxW(q);
         volumes.push_back(volume);
-        for (const unsigned int v : cell->vertex_indices())
-          nodes.push_back(
-            space.relevant.index_within_set(cell->vertex_dof_index(v, 0)));
         if (at_quadrature_points)
           for (const unsigned int q : fe_values.quadrature_point_indices())
             {
               weights.push_back(fe_values.JxW(q));
-              positions.push_back(fe_values.quadrature_point(q));
+              positions.push_back(fe_values.quadrature_point(q) -
+                                  cell->vertex(0));
               for (const unsigned int v : cell->vertex_indices())
                 {
                   gradients.push_back(fe_values.shape_grad(v * dim, q));
@@ -64,7 +98,7 @@ namespace Viscoplastic
         else
           {
             weights.push_back(volume);
-            positions.push_back(cell->center());
+            positions.push_back(cell->center() - cell->vertex(0));
             for (const unsigned int v : cell->vertex_indices())
               {
                 Tensor<1, dim> mean;
@@ -119,8 +153,8 @@ namespace Viscoplastic
     std::array<double, n_vertices>         hoop{};
     for (unsigned int s = 0; s < n_samples; ++s)
       {
-        const std::size_t first = (cell * n_samples + s) * n_vertices;
-        const double      part  = weight(cell, s) / volumes[cell];
+        const std::size_t first = (shapes[cell] * n_samples + s) * n_vertices;
+        const double      part  = weight(cell, s) / volume(cell);
         for (unsigned int v = 0; v < n_vertices; ++v)
           {
             gradient[v] += part * gradients[first + v];
@@ -145,7 +179,7 @@ namespace Viscoplastic
     double mean = 0.;
     for (unsigned int s = 0; s < n_samples; ++s)
       {
-        const std::size_t first = (cell * n_samples + s) * n_vertices;
+        const std::size_t first = (shapes[cell] * n_samples + s) * n_vertices;
         strain[s]               = strain_at(cell,
                               u,
                               &gradients[first],
@@ -154,7 +188,7 @@ namespace Viscoplastic
       }
     if (mean_dilatation && n_samples > 1)
       {
-        mean /= volumes[cell];
+        mean /= volume(cell);
         for (unsigned int s = 0; s < n_samples; ++s)
           strain[s] = with_dilatation(strain[s], mean);
       }
@@ -176,13 +210,13 @@ namespace Viscoplastic
       {
         for (unsigned int s = 0; s < n_samples; ++s)
           pressure += trace(stress[s]) / 3. * weight(cell, s);
-        pressure /= volumes[cell];
+        pressure /= volume(cell);
       }
     double forces[n_vertices][dim] = {};
     for (unsigned int s = 0; s < n_samples; ++s)
       {
         const Tensor<1, dim> *g =
-          &gradients[(cell * n_samples + s) * n_vertices];
+          &gradients[(shapes[cell] * n_samples + s) * n_vertices];
         const double weighted = factor * weight(cell, s);
         // What acts in the plane, in 2D, and around an axis.
         double acting[dim][dim], around = 0.;
@@ -208,7 +242,7 @@ namespace Viscoplastic
         if (!hoops.empty())
           for (unsigned int v = 0; v < n_vertices; ++v)
             forces[v][0] +=
-              around * hoops[(cell * n_samples + s) * n_vertices + v];
+              around * hoops[(shapes[cell] * n_samples + s) * n_vertices + v];
       }
     for (unsigned int v = 0; v < n_vertices; ++v)
       for (unsigned int i = 0; i < dim; ++i)
@@ -226,9 +260,9 @@ namespace Viscoplastic
     constexpr unsigned int n             = n_vertices * dim;
     const bool             mean_pressure = mean_dilatation && n_samples > 1;
     std::array<double, n>  mean{}; // divergence of each shape function
-    const Tensor<1, dim>  *g = &gradients[cell * n_samples * n_vertices];
-    const double          *h =
-      hoops.empty() ? nullptr : &hoops[cell * n_samples * n_vertices];
+    const Tensor<1, dim> *g = &gradients[shapes[cell] * n_samples * n_vertices];
+    const double         *h =
+      hoops.empty() ? nullptr : &hoops[shapes[cell] * n_samples * n_vertices];
     const auto hoop = [&h](const unsigned int v, const unsigned int component) {
       return h != nullptr && component == 0 ? h[v] : 0.;
     };
@@ -237,7 +271,7 @@ namespace Viscoplastic
         for (unsigned int i = 0; i < n; ++i)
           mean[i] += (g[s * n_vertices + i / dim][i % dim] +
                       hoop(s * n_vertices + i / dim, i % dim)) *
-                     weight(cell, s) / volumes[cell];
+                     weight(cell, s) / volume(cell);
 
     // Also of the axial unknown.
     const unsigned int                       n_all = n + (space.axial ? 1 : 0);
@@ -357,6 +391,7 @@ namespace Viscoplastic
 
 
 
+  VISCOPLASTIC_INSTANTIATE_CLASS(CellShapes);
   VISCOPLASTIC_INSTANTIATE_CLASS(StressSpace);
   VISCOPLASTIC_INSTANTIATE(irreversible_forces);
   VISCOPLASTIC_INSTANTIATE(add_irreversible_load);

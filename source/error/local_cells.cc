@@ -29,34 +29,15 @@ namespace Viscoplastic
 
 
   template <int dim>
-  unsigned int
-  LocalCells<dim>::find_shape(const CellIterator &cell,
-                              FEValues<dim>      &values,
-                              FEFaceValues<dim>  &on_face,
-                              ShapeNumbers       &number_of)
+  void
+  LocalCells<dim>::add_shape(const CellIterator &cell,
+                             FEValues<dim>      &values,
+                             FEFaceValues<dim>  &on_face)
   {
-    // Vertices from the first, relative to the diameter and rounded: equal for
-    // translated cells, whatever rounding did to their vertices.
-    constexpr double resolution = 1ll << 36;
-    ShapeKey         key{};
-    int              exponent;
-    const double     diameter = cell->diameter();
-    key[0] = std::llround(std::frexp(diameter, &exponent) * resolution);
-    key[1] = exponent;
-    for (unsigned int v = 1, i = 2; v < n_vertices; ++v)
-      for (unsigned int d = 0; d < dim; ++d, ++i)
-        key[i] = std::llround((cell->vertex(v)[d] - cell->vertex(0)[d]) /
-                              diameter * resolution);
-    if (has_hoops)
-      key.back() = std::llround(cell->vertex(0)[0] / diameter * resolution);
-    const auto [entry, is_new] = number_of.emplace(key, shapes.size());
-    if (!is_new)
-      return entry->second;
-
     values.reinit(cell);
     shapes.emplace_back();
     Shape &shape   = shapes.back();
-    shape.diameter = diameter;
+    shape.diameter = cell->diameter();
     double volume  = 0.;
     for (const unsigned int q : values.quadrature_point_indices())
       {
@@ -85,7 +66,6 @@ namespace Viscoplastic
         on_face.reinit(cell, f);
         shape.faces[f].reinit(cell->vertex(0), on_face, has_hoops);
       }
-    return entry->second;
   }
 
 
@@ -108,9 +88,13 @@ namespace Viscoplastic
                               update_values | update_gradients |
                                 update_normal_vectors |
                                 update_quadrature_points | update_JxW_values);
-    ShapeNumbers                number_of;
+    CellShapes<dim>             number_of(space.scene.plane_model());
+    cells.reserve(space.cells.size());
     const auto add = [&](const CellIterator &cell, const Stiffness &E) {
-      LocalCell here{find_shape(cell, values, on_face, number_of),
+      const auto [shape, is_new] = number_of.add(cell);
+      if (is_new)
+        add_shape(cell, values, on_face);
+      LocalCell here{shape,
                      cell->active_cell_index(),
                      cell->global_active_cell_index(),
                      {},

@@ -238,12 +238,12 @@ namespace Viscoplastic
     has_recorded_initial_state = true;
     AcceptedStep<dim> initial;
     initial.time_step = {0, 0., 0., 0.};
-    initial.end       = accepted;
-    initial.report    = initial_report;
-    time_stepper->estimate_quantity(initial.end);
     // First: the seconds that steps are expected to take begin with the record.
     if (files)
       files->write(initial.time_step);
+    initial.end    = accepted;
+    initial.report = initial_report;
+    time_stepper->estimate_quantity(initial.end);
     recorder.record(accepted,
                     initial,
                     known_solution.errors(*discretization, accepted.state));

@@ -6,7 +6,10 @@
 #include <viscoplastic_contact/discretization/admissible_space.h>
 #include <viscoplastic_contact/discretization/elasticity.h>
 
+#include <array>
+#include <map>
 #include <memory>
+#include <utility>
 #include <vector>
 
 namespace Viscoplastic
@@ -17,6 +20,29 @@ namespace Viscoplastic
   using IrreversibleStress = std::vector<SymmetricTensor<2, 3>>;
 
 
+  /// Numbers for the shapes of cells: the same for cells that differ by a
+  /// translation, on sections of rings by one along the axis.
+  template <int dim>
+  class CellShapes
+  {
+  public:
+    explicit CellShapes(const PlaneModel model)
+      : is_of_ring(model == PlaneModel::axisymmetric)
+    {}
+
+    /// The number of a cell's shape, and whether it is new.
+    std::pair<unsigned int, bool>
+    add(const typename DoFHandler<dim>::active_cell_iterator &cell);
+
+  private:
+    static constexpr unsigned int key_size =
+      dim * (GeometryInfo<dim>::vertices_per_cell - 1) + 3;
+
+    const bool                                                 is_of_ring;
+    std::map<std::array<std::int64_t, key_size>, unsigned int> number_of;
+  };
+
+
   /// The space Q_h of stresses, the paper's H^h: symmetric tensors that are
   /// constant in each cell, FE_DGQ(0). As its refinement, tensors at the Gauss
   /// points of each cell, FE_DGQArbitraryNodes of QGauss(2). An element of the
@@ -24,8 +50,8 @@ namespace Viscoplastic
   ///
   /// The space knows the projection P_Qh of strains, (3.1), and its transpose,
   /// the virtual work of stresses. It keeps the gradients of the shape
-  /// functions of V_h, projected, so that the time loop needs no FEValues:
-  /// 2^dim (dim + 1/2) doubles a sample.
+  /// functions of V_h, projected, so that the time loop needs no FEValues; once
+  /// for all cells of a shape.
   ///
   /// In generalized plane strain the strain has zz of the whole section, which
   /// stresses work on, too.
@@ -53,25 +79,26 @@ namespace Viscoplastic
     std::size_t
     n_cells() const
     {
-      return volumes.size();
+      return shapes.size();
     }
 
     double
     volume(const std::size_t cell) const
     {
-      return volumes[cell];
+      return volumes[shapes[cell]];
     }
 
     double
     weight(const std::size_t cell, const unsigned int s) const
     {
-      return weights[cell * n_samples + s];
+      return weights[shapes[cell] * n_samples + s];
     }
 
-    const Point<dim> &
+    Point<dim>
     position(const std::size_t cell, const unsigned int s) const
     {
-      return positions[cell * n_samples + s];
+      return space.cells[cell]->vertex(0) +
+             positions[shapes[cell] * n_samples + s];
     }
 
     /// P_Qh eps(u) in a cell: the mean strain, or that at the Gauss points.
@@ -115,7 +142,7 @@ namespace Viscoplastic
         return samples[0];
       SymmetricTensor<2, 3> result;
       for (unsigned int s = 0; s < n_samples; ++s)
-        result += samples[s] * (weight(cell, s) / volumes[cell]);
+        result += samples[s] * (weight(cell, s) / volume(cell));
       return result;
     }
 
@@ -142,14 +169,15 @@ namespace Viscoplastic
               const Tensor<1, dim> *gradient,
               const double         *hoop) const;
 
-    std::vector<unsigned int>   nodes;     // n_vertices a cell
-    std::vector<Tensor<1, dim>> gradients; // n_vertices a sample
-    /// The hoop strain of u_r = 1 at each vertex, likewise; empty unless the
-    /// body is one of revolution.
-    std::vector<double>     hoops;
-    std::vector<double>     weights;   // 1 a sample
-    std::vector<Point<dim>> positions; // 1 a sample
-    std::vector<double>     volumes;   // 1 a cell
+    std::vector<unsigned int> nodes;  // n_vertices a cell
+    std::vector<unsigned int> shapes; // of cells
+    /// Of shapes: 1 each, then at their samples n_vertices each, ...
+    std::vector<double>         volumes;
+    std::vector<Tensor<1, dim>> gradients;
+    /// ... the hoop strain of u_r = 1 at each vertex, likewise; empty unless
+    /// the body is one of revolution; and 1 each, positions from vertex 0.
+    std::vector<double>         hoops, weights;
+    std::vector<Tensor<1, dim>> positions;
   };
 
 

@@ -6,7 +6,6 @@
 #include <viscoplastic_contact/discretization/stress_space.h>
 
 #include <array>
-#include <map>
 #include <vector>
 
 namespace Viscoplastic
@@ -151,15 +150,9 @@ namespace Viscoplastic
     by_active_index(const std::vector<double> &by_cell) const;
 
   private:
-    static constexpr unsigned int key_size = dim * (n_vertices - 1) + 3;
-    using ShapeKey                         = std::array<std::int64_t, key_size>;
-    using ShapeNumbers                     = std::map<ShapeKey, unsigned int>;
-
-    /// The number of a cell's shape, made if it is new.
-    unsigned int
-    find_shape(const CellIterator &cell,
-               FEValues<dim>      &values,
-               FEFaceValues<dim>  &on_face,
-               ShapeNumbers       &number_of);
+    void
+    add_shape(const CellIterator &cell,
+              FEValues<dim>      &values,
+              FEFaceValues<dim>  &on_face);
   };
 } // namespace Viscoplastic

@@ -104,8 +104,8 @@ namespace Viscoplastic
     /// Add the quantity, its errors and the indicators to the state at the end
     /// of a step, whose estimate in the energy norm is complete. @p solver: for
     /// the matrix of a(.,.). @p slip_defects, @p slip_change: of the step, if
-    /// any. @p growth: how the mesh part goes on from that of @p accepted, if it
-    /// is not estimated anew. Collective. Throws ExcMessage.
+    /// any. @p growth: how the mesh part goes on from that of @p accepted, if
+    /// it is not estimated anew. Collective. Throws ExcMessage.
     void
     assess(BulkSolver                  &solver,
            const SlipDefects           *slip_defects,

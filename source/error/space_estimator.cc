@@ -15,11 +15,12 @@ namespace Viscoplastic
                  const State<dim>          &state,
                  const Forces<dim>         &forces)
   {
-    DistributedVector u(forces.u), elastic(forces.elastic),
-      internal(forces.internal);
+    DistributedVector u(forces.u), internal(forces.internal);
     u -= old_forces.u;
-    elastic -= old_forces.elastic;
     internal -= old_forces.internal;
+    double irreversible = 0.; // (dz, eps(du))
+    if (forces.irreversible.size() > 0)
+      irreversible = u * forces.irreversible - u * old_forces.irreversible;
     // |sigma|^2 = a(u, u) + 2 (z, eps(u)) + |z|^2.
     std::vector<double>     sums(4, 0.); // |dz|^2, |z|^2, points
     const StressSpace<dim> &space = discretization.stress_space;
@@ -46,10 +47,11 @@ namespace Viscoplastic
         sums[2] += holds(old.contact) != holds(state.contact) ? 1. : 0.;
       }
     Utilities::MPI::sum(sums, discretization.space.communicator, sums);
-    const double strain = u * elastic, energy = 2. * forces.strain_energy;
+    const double strain = u * internal - irreversible,
+                 energy = 2. * forces.strain_energy;
     return std::max(std::sqrt(strain / energy),
                     std::sqrt(
-                      (2. * (u * internal) - strain + sums[0]) /
+                      (strain + 2. * irreversible + sums[0]) /
                       (energy + 2. * forces.irreversible_work + sums[1]))) +
            // Twice, since dual solutions jump with them.
            (sums[3] > 0. ? 2. * sums[2] / sums[3] : 0.);

@@ -221,10 +221,13 @@ namespace Viscoplastic
                                                       accepted.forces,
                                                       end.state,
                                                       end.forces);
-    if (!(since <= largest_change))
+    // Rounding may make energies negative.
+    const double growth =
+      end.forces.strain_energy / accepted.forces.strain_energy;
+    if (!(since <= largest_change && growth > 0.))
       return {};
     end.errors.since_estimate = since;
-    return std::sqrt(end.forces.strain_energy / accepted.forces.strain_energy);
+    return std::sqrt(growth);
   }
 
 

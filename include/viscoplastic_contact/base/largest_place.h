@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 namespace Viscoplastic
 {
@@ -32,9 +33,7 @@ namespace Viscoplastic
       largest_value = std::max(largest_value, value);
       if (!may_take(value))
         return;
-      if (value > representative * (1. + tolerance) ||
-          std::lexicographical_compare(
-            x.begin_raw(), x.end_raw(), place.begin_raw(), place.end_raw()))
+      if (value > representative * (1. + tolerance) || is_before(x, place))
         {
           representative = value;
           place          = x;
@@ -73,6 +72,16 @@ namespace Viscoplastic
 
   private:
     static constexpr double tolerance = 1e-6;
+
+    /// Whether coordinates are smaller, beyond rounding.
+    static bool
+    is_before(const Point<dim> &x, const Point<dim> &y)
+    {
+      for (unsigned int d = 0; d < dim; ++d)
+        if (std::abs(x[d] - y[d]) > 1e-12 * (x.norm() + y.norm()))
+          return x[d] < y[d];
+      return false;
+    }
 
     double     largest_value = 0., representative = 0.;
     Point<dim> place;

@@ -35,7 +35,8 @@ namespace Viscoplastic
     {
       total *= factor;
       recovery *= factor;
-      squared_indicators *= factor * factor;
+      if (squared_indicators.size() > 0)
+        squared_indicators *= factor * factor;
     }
   };
 

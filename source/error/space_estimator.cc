@@ -164,7 +164,6 @@ namespace Viscoplastic
     for (unsigned int i = 0; i < squared.size(); ++i)
       squared[i] = std::max(squared[i], recovery[i]);
     const auto &triangulation = d.space.dof_handler.get_triangulation();
-    result.recovery           = total_estimate(recovery, triangulation);
     if (locks)
       {
         const VolumetricLocking locking =

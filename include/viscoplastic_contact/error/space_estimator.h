@@ -17,8 +17,6 @@ namespace Viscoplastic
     /// The estimate in the energy norm; zero if only Kelly's indicator is
     /// computed.
     double total = 0.;
-    /// The part of it that recovered strains tell.
-    double recovery = 0.;
     /// The error of the rate G: of cell means (cell_mean_defect()) or by
     /// volumetric locking; zero without either.
     double rate_defect = 0.;
@@ -34,7 +32,6 @@ namespace Viscoplastic
     scale(const double factor)
     {
       total *= factor;
-      recovery *= factor;
       if (squared_indicators.size() > 0)
         squared_indicators *= factor * factor;
     }

@@ -90,22 +90,19 @@ namespace Viscoplastic
           return text.str();
         }
 
-      const Tensor<1, dim> traction = solution.traction(x, normal, t),
-                           force    = tangential(traction, normal);
-      scales.stress                 = std::max(scales.stress, force.norm());
-      const double tolerance        = small * scales.stress;
+      const Tensor<1, dim> force =
+        tangential(solution.traction(x, normal, t), normal);
+      scales.stress          = std::max(scales.stress, force.norm());
+      const double tolerance = small * scales.stress;
       if (!condition.has_friction())
         {
           if (force.norm() > tolerance)
             text << "has no friction, but the tangential stress is " << force;
           return text.str();
         }
-      double bound = condition.bound(x, t);
-      if (condition.has_computed_pressure())
-        bound += condition.friction_coefficient(x, t) *
-                 std::max(0., -traction * normal);
-      const Tensor<1, dim> slip = slip_rate(condition, solution, x, t, k);
-      scales.velocity           = std::max(scales.velocity, slip.norm());
+      const double         bound = condition.bound(x, t);
+      const Tensor<1, dim> slip  = slip_rate(condition, solution, x, t, k);
+      scales.velocity            = std::max(scales.velocity, slip.norm());
       if (force.norm() > bound + tolerance)
         text << "has the friction bound " << bound
              << ", but the tangential stress is " << force;

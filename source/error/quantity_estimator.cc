@@ -6,69 +6,6 @@ namespace Viscoplastic
 {
   namespace
   {
-    /// Tangents of creep serve until the compliance E^-1 + T dG/dsigma of today
-    /// would differ by this, as a mean over the body.
-    constexpr double largest_change = 0.1;
-    /// The exponent n of the law (see QuantityEstimator::Creep) and int |s|.
-    /// Collective.
-    template <int dim>
-    std::pair<double, double>
-    creep_of(const StressSpace<dim> &stress_space,
-             const State<dim>       &state,
-             const FlowRate         &rate)
-    {
-      std::vector<SymmetricTensor<2, 3>> strains(stress_space.n_samples);
-      double      largest = 0., sum = 0.; // squared |G|/|s|, int |s|
-      std::size_t i = 0;
-      for (std::size_t c = 0; c < stress_space.n_cells(); ++c)
-        {
-          const Stiffness &stiffness = stress_space.moduli(c);
-          stress_space.strains(c, state.u.begin(), strains.data());
-          for (unsigned int s = 0; s < stress_space.n_samples; ++s, ++i)
-            {
-              const SymmetricTensor<2, 3> deviatoric =
-                deviator(stiffness.stress(strains[s]) + state.z[i]);
-              const double square = stiffness.complementary_square(deviatoric);
-              sum += stress_space.weight(c, s) * deviatoric.norm();
-              if (square > 0.)
-                largest =
-                  std::max(largest,
-                           stiffness.complementary_square(rate.rate[i]) /
-                             square);
-            }
-        }
-      const MPI_Comm comm = stress_space.space.communicator;
-      return {rate.relaxation_rate /
-                std::sqrt(Utilities::MPI::max(largest, comm)),
-              Utilities::MPI::sum(sum, comm)};
-    }
-
-
-
-    /// int |G' - G| and int |G|, of the rates @p from, G, and @p to.
-    /// Collective.
-    template <int dim>
-    std::array<double, 2>
-    change(const StressSpace<dim>   &stress_space,
-           const IrreversibleStress &from,
-           const IrreversibleStress &to)
-    {
-      std::array<double, 2> sums{};
-      std::size_t           i = 0;
-      for (std::size_t c = 0; c < stress_space.n_cells(); ++c)
-        for (unsigned int s = 0; s < stress_space.n_samples; ++s, ++i)
-          {
-            sums[0] += stress_space.weight(c, s) * (to[i] - from[i]).norm();
-            sums[1] += stress_space.weight(c, s) * from[i].norm();
-          }
-      Utilities::MPI::sum(ArrayView<const double>(sums.data(), 2),
-                          stress_space.space.communicator,
-                          ArrayView<double>(sums.data(), 2));
-      return sums;
-    }
-
-
-
     /// E at the samples.
     template <int dim>
     std::vector<SymmetricTensor<4, 3>>
@@ -109,100 +46,6 @@ namespace Viscoplastic
   QuantityEstimator<dim>::is_of_creep(const Scene<dim> &scene)
   {
     return scene.has_viscosity() && scene.quantity;
-  }
-
-
-
-  template <int dim>
-  Vector<double>
-  QuantityEstimator<dim>::products_of_creep(const State<dim> &state,
-                                            const FlowRate   &rate,
-                                            const Creep      &creep,
-                                            const CoulombLaw *law,
-                                            Vector<double>   &sides) const
-  {
-    const StressSpace<dim> &stress_space = discretization.stress_space;
-    const unsigned int      n            = stress_space.n_samples;
-    // After a thousand relaxation times the body is as good as incompressible.
-    // To half a power of two, so that linear laws have few matrices.
-    const double longest = 1e3 / rate.relaxation_rate,
-                 time    = std::min(creep.time, std::max(state.t, longest)),
-                 k       = std::exp2(
-                   0.5 * std::floor(2. * std::log2(std::min(time, longest))));
-    const auto now = discretization.laws.at(state.t, state.history);
-    // What they miss of tangents of today is in the remainder.
-    const auto has_changed = [&] {
-      const auto [difference, size] =
-        change(stress_space, linearized->rate_slope, rate.rate);
-      return k * difference >
-             largest_change * (creep.stress / creep.exponent + k * size);
-    };
-    bool is_new = false;
-    if (!linearized || k != linearized->k ||
-        (!tangent->is_constant && has_changed()))
-      {
-        linearized.reset(); // until there are tangents
-        is_new = tangent->linearize(state.u, state.z, now, k);
-        linearized.emplace();
-        linearized->t = state.t;
-        linearized->k = k;
-        if (!tangent->is_constant)
-          {
-            linearized->u          = state.u;
-            linearized->z          = state.z;
-            linearized->history    = state.history;
-            linearized->rate_slope = rate.rate;
-          }
-      }
-    if (is_new)
-      dual_of_creep = {};
-    renew(solver_of_tangents(*tangent, is_new),
-          tangent->matrix(),
-          state.contact,
-          law,
-          dual_of_creep);
-    const DualSolution<dim> &dual = dual_of_creep.solution;
-    typename RecoveryEstimator<dim>::Linearization linearization{k / time, {}};
-    std::vector<SymmetricTensor<2, 3>>             strains(n);
-    std::size_t strained_cell = numbers::invalid_size_type; // whose strains
-    if (!tangent->is_constant)
-      linearization.remainder = [&](const std::size_t            c,
-                                    const unsigned int           s,
-                                    const SymmetricTensor<2, 3> &e) {
-        const ViscoplasticLaw *flow = now.law(c);
-        if (flow == nullptr)
-          return SymmetricTensor<2, 3>();
-        if (c != strained_cell)
-          stress_space.strains(c, state.u.begin(), strains.data());
-        strained_cell                         = c;
-        const Stiffness            &stiffness = stress_space.moduli(c);
-        const SymmetricTensor<2, 3> stress    = stiffness.stress(strains[s]) +
-                                             state.z[c * n + s],
-                                    change =
-                                      tangent->at_samples()[c * n + s] * e,
-                                    strain = now.mechanical(strains[s], c, s);
-        const LawPoint point               = now.point(c, s);
-        // C e = E e + k dG to first order.
-        return change - stiffness.stress(e) -
-               k * (flow->step_rate(
-                      stress + change, strain + e, k, stiffness, point) -
-                    flow->step_rate(stress, strain, k, stiffness, point));
-      };
-    Vector<double> products =
-      space_estimator.multiply_recovered(state,
-                                         dual,
-                                         tangent->at_samples(),
-                                         linearization,
-                                         dual_of_creep.recovered);
-    sides = boundary_defects.missing_sides(state, dual.cartesian);
-    // The longer step moves the body more by the same force.
-    if (discretization.scene().quantity->is_force())
-      {
-        products *= linearization.share;
-        if (sides.size() > 0)
-          sides *= linearization.share;
-      }
-    return products;
   }
 
 
@@ -318,8 +161,7 @@ namespace Viscoplastic
       {
         Creep creep{errors.creep_time, 0., 0.};
         if (tangent && end.rate)
-          std::tie(creep.exponent, creep.stress) =
-            creep_of(d.stress_space, state, *end.rate);
+          creep = creep_of(state, *end.rate, errors.creep_time);
         if (!dual_of_step.residuals)
           dual_of_step.residuals = space_estimator.residuals_of(dual);
         const Vector<double> &of_dual  = dual_of_step.residuals->squares;

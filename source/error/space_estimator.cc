@@ -8,58 +8,6 @@
 namespace Viscoplastic
 {
   template <int dim>
-  double
-  change_of_step(const Discretization<dim> &discretization,
-                 const State<dim>          &old,
-                 const Forces<dim>         &old_forces,
-                 const State<dim>          &state,
-                 const Forces<dim>         &forces)
-  {
-    DistributedVector u(forces.u), internal(forces.internal);
-    u -= old_forces.u;
-    internal -= old_forces.internal;
-    double irreversible = 0.; // (dz, eps(du))
-    if (forces.irreversible.size() > 0)
-      irreversible = u * forces.irreversible - u * old_forces.irreversible;
-    // |sigma|^2 = a(u, u) + 2 (z, eps(u)) + |z|^2.
-    std::vector<double>     sums(4, 0.); // |dz|^2, |z|^2, points
-    const StressSpace<dim> &space = discretization.stress_space;
-    std::size_t             i     = 0;
-    if (!state.z.empty())
-      for (std::size_t c = 0; c < space.n_cells(); ++c)
-        for (unsigned int s = 0; s < space.n_samples; ++s, ++i)
-          {
-            const Stiffness &stiffness = space.moduli(c);
-            sums[0] += space.weight(c, s) *
-                       stiffness.complementary_square(state.z[i] - old.z[i]);
-            sums[1] +=
-              space.weight(c, s) * stiffness.complementary_square(state.z[i]);
-          }
-    sums[3] = state.contact.n_points();
-    for (unsigned int p = 0; p < state.contact.n_points(); ++p)
-      {
-        const auto holds = [&](const ContactState &contact) {
-          return contact.sticks[p] &&
-                 (discretization.face->layout().points[p].is_obstacle ?
-                    contact.multiplier[p][0] :
-                    contact.bound[p]) > 0.;
-        };
-        sums[2] += holds(old.contact) != holds(state.contact) ? 1. : 0.;
-      }
-    Utilities::MPI::sum(sums, discretization.space.communicator, sums);
-    const double strain = u * internal - irreversible,
-                 energy = 2. * forces.strain_energy;
-    return std::max(std::sqrt(strain / energy),
-                    std::sqrt(
-                      (strain + 2. * irreversible + sums[0]) /
-                      (energy + 2. * forces.irreversible_work + sums[1]))) +
-           // Twice, since dual solutions jump with them.
-           (sums[3] > 0. ? 2. * sums[2] / sums[3] : 0.);
-  }
-
-
-
-  template <int dim>
   SpaceEstimator<dim>::SpaceEstimator(const Discretization<dim> &discretization)
     : discretization(discretization)
     , refines_by_kelly(discretization.scene().parameters.refinement.strategy ==
@@ -231,5 +179,4 @@ namespace Viscoplastic
 
   VISCOPLASTIC_INSTANTIATE_CLASS(SpaceEstimator);
   VISCOPLASTIC_INSTANTIATE(squared_recovery_estimate);
-  VISCOPLASTIC_INSTANTIATE(change_of_step);
 } // namespace Viscoplastic

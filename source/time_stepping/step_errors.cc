@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <viscoplastic_contact/time_stepping/time_stepper.h>
 
+#include <limits>
+
 // What a step of a TimeStepper is judged by.
 
 namespace Viscoplastic
@@ -11,6 +13,67 @@ namespace Viscoplastic
     /// proportion. Not round: equal steps would make ties, which ranks break
     /// differently.
     constexpr double largest_change = 0.0937;
+
+
+
+    /// How far a step moves a state, relative to its end: the larger of the
+    /// changes of strain and stress in their energy norms, and beside them
+    /// twice the share of contact points that begin or cease to stick or to
+    /// touch. Not a number where there is nothing to be relative to.
+    /// Collective.
+    template <int dim>
+    double
+    change_of_step(const Discretization<dim> &discretization,
+                   const EvaluatedState<dim> &accepted,
+                   const EvaluatedState<dim> &end)
+    {
+      const State<dim>  &old = accepted.state, &state = end.state;
+      const Forces<dim> &old_forces = accepted.forces, &forces = end.forces;
+      DistributedVector  u(forces.u), internal(forces.internal);
+      u -= old_forces.u;
+      internal -= old_forces.internal;
+      double irreversible = 0.; // (dz, eps(du))
+      if (forces.irreversible.size() > 0)
+        irreversible = u * forces.irreversible - u * old_forces.irreversible;
+      // |sigma|^2 = a(u, u) + 2 (z, eps(u)) + |z|^2.
+      std::vector<double>     sums(4, 0.); // |dz|^2, |z|^2, points
+      const StressSpace<dim> &space = discretization.stress_space;
+      std::size_t             i     = 0;
+      if (!state.z.empty())
+        for (std::size_t c = 0; c < space.n_cells(); ++c)
+          for (unsigned int s = 0; s < space.n_samples; ++s, ++i)
+            {
+              const Stiffness &stiffness = space.moduli(c);
+              sums[0] += space.weight(c, s) *
+                         stiffness.complementary_square(state.z[i] - old.z[i]);
+              sums[1] +=
+                space.weight(c, s) * stiffness.complementary_square(state.z[i]);
+            }
+      sums[3] = state.contact.n_points();
+      for (unsigned int p = 0; p < state.contact.n_points(); ++p)
+        {
+          const auto holds = [&](const ContactState &contact) {
+            return contact.sticks[p] &&
+                   (discretization.face->layout().points[p].is_obstacle ?
+                      contact.multiplier[p][0] :
+                      contact.bound[p]) > 0.;
+          };
+          sums[2] += holds(old.contact) != holds(state.contact) ? 1. : 0.;
+        }
+      Utilities::MPI::sum(sums, discretization.space.communicator, sums);
+      const double strain = u * internal - irreversible,
+                   energy = 2. * forces.strain_energy;
+      // Rounding may make differences and energies negative.
+      const auto share = [](const double part, const double whole) {
+        return whole > 0. ? std::sqrt(std::max(part, 0.) / whole) :
+                            std::numeric_limits<double>::infinity();
+      };
+      // Points count twice, since dual solutions jump with them.
+      return std::max(share(strain, energy),
+                      share(strain + 2. * irreversible + sums[0],
+                            energy + 2. * forces.irreversible_work + sums[1])) +
+             (sums[3] > 0. ? 2. * sums[2] / sums[3] : 0.);
+    }
 
 
 
@@ -215,13 +278,8 @@ namespace Viscoplastic
         space_estimator->has_curved_contact() ||
         (scene.quantity && scene.quantity->is_sum()))
       return {};
-    const double since =
-      accepted.errors.since_estimate + change_of_step(discretization,
-                                                      accepted.state,
-                                                      accepted.forces,
-                                                      end.state,
-                                                      end.forces);
-    // Rounding may make energies negative.
+    const double since = accepted.errors.since_estimate +
+                         change_of_step(discretization, accepted, end);
     const double growth =
       end.forces.strain_energy / accepted.forces.strain_energy;
     if (!(since <= largest_change && growth > 0.))

@@ -232,9 +232,10 @@ class Greco(Contact):
                 self.assertEqual(result["contact_iterations"][2:].sum(), 0)
 
     def test_price(self):
-        """By multigrid, against bounds that are given, those that have come out.
-        Measured: 12 corrections for 12, 78 linear iterations for 46; the latter were
-        55 before each set of given bounds cost a cycle less."""
+        """By multigrid, against bounds that are given, those that have come out: at
+        most 1.5 times the corrections, and 1.5 times the linear iterations that given
+        bounds took (55) before each of their sets cost a cycle less. Measured: 12 for
+        12, 78 for 46."""
         multigrid = {
             **self.PLATE,
             "Geometry/Arguments": "8, 8 : 0, 0 : 0.04, 0.04 : true",
@@ -259,8 +260,10 @@ class Greco(Contact):
             }
             tresca = run("greco", {**multigrid, **given}, text="")
         self.assertClose(tresca["point0_x"][-1], law["point0_x"][-1], relative=1e-3)
-        for name, most in ("contact_iterations", 1.5), ("linear_iterations", 1.8):
-            self.assertLess(law[name].sum(), most * tresca[name].sum(), name)
+        corrections = "contact_iterations"
+        self.assertLess(law[corrections].sum(), 1.5 * tresca[corrections].sum())
+        self.assertLess(law["linear_iterations"].sum(), 1.5 * 55)
+        self.assertLess(tresca["linear_iterations"].sum(), 50)
 
 
 class HardCases(Contact):

@@ -635,6 +635,10 @@ class KeptTangents(TestCase):
             result = run("hard/norton_cylinder", self.SCENE, ranks=ranks)
             rows = without_wall_times(result.directory / "statistics.csv")
             kept[ranks] = result["quantity_space"]
+            # by turns: two steps change the state by more than 9 %
+            share = result["estimate_space"][1:] / result["energy_norm"][1:]
+            in_proportion = np.abs(np.diff(share)) < 1e-9 * share[1:]
+            self.assertEqual(list(np.flatnonzero(in_proportion) + 2), [14, 16, 18, 20])
             overrides = {
                 **self.SCENE,
                 "Checkpoint/Every n steps": 14,

@@ -141,7 +141,7 @@ namespace Viscoplastic
     /// the last |G| alone makes that.
     double creep_path = 0., creep_time = 0.;
     /// How far the steps since the space estimate was made have moved the
-    /// state, relative to it: change_of_step().
+    /// state, relative to it, see TimeStepper::growth_since_estimate().
     double since_estimate = 0.;
 
     /// Write to, or read from, an archive; but for what is of step control

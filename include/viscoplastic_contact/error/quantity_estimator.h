@@ -169,6 +169,12 @@ namespace Viscoplastic
       double stress;
     };
 
+    /// Of a state with the rate G, @p time. Collective.
+    Creep
+    creep_of(const State<dim> &state,
+             const FlowRate   &rate,
+             const double      time) const;
+
     /// What the errors of rates have done to the quantity by the end of a
     /// step, by active cell; and the missing sides with the dual solution of
     /// creep. Collective.

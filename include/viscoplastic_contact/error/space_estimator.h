@@ -39,20 +39,6 @@ namespace Viscoplastic
 
 
 
-  /// How far a step moves a state, relative to its end: the larger of the
-  /// changes of strain and stress in their energy norms, and beside them twice
-  /// the share of contact points that begin or cease to stick or to touch. Not
-  /// a number where there is nothing to be relative to. Collective.
-  template <int dim>
-  double
-  change_of_step(const Discretization<dim> &discretization,
-                 const State<dim>          &old,
-                 const Forces<dim>         &old_forces,
-                 const State<dim>          &state,
-                 const Forces<dim>         &forces);
-
-
-
   /// Makes the estimates that a scene asks for on one mesh: that of the error,
   /// also for refinement, and Kelly's for refinement.
   ///

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <viscoplastic_contact/base/linear_algebra.h>
+#include <viscoplastic_contact/contact/sparse_face_matrix.h>
 #include <viscoplastic_contact/linear_solvers/bulk_solver.h>
 #include <viscoplastic_contact/linear_solvers/face_restriction.h>
 #include <viscoplastic_contact/linear_solvers/preconditioner.h>
@@ -11,8 +12,6 @@
 
 namespace Viscoplastic
 {
-  class SparseFaceMatrix;
-
   /// Preconditioned conjugate gradients on the truncated space, on any number
   /// of ranks.
   class KrylovSolver : public BulkSolver
@@ -22,7 +21,6 @@ namespace Viscoplastic
                  const std::vector<bool>        &excluded,
                  const FaceRestriction          &restriction,
                  std::unique_ptr<Preconditioner> preconditioner);
-    ~KrylovSolver() override;
 
     bool
     is_exact() const override
@@ -31,7 +29,10 @@ namespace Viscoplastic
     }
 
     std::string
-    name() const override;
+    name() const override
+    {
+      return "conjugate gradients with " + preconditioner->name();
+    }
 
     Report
     solve(const DistributedVector &load,
@@ -45,16 +46,25 @@ namespace Viscoplastic
           const SolutionScale     &scale) override;
 
     const FaceMatrix &
-    face_matrix() const override;
+    face_matrix() const override
+    {
+      return *sparse_face_matrix;
+    }
 
     bool
     renew(const DistributedMatrix &matrix) override;
 
     std::optional<PreconditionerState>
-    preconditioner_state() const override;
+    preconditioner_state() const override
+    {
+      return preconditioner->state();
+    }
 
     void
-    restore(const std::optional<PreconditionerState> &state) override;
+    restore(const std::optional<PreconditionerState> &state) override
+    {
+      preconditioner->restore(state);
+    }
 
   private:
     class Solve;

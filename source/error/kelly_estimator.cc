@@ -80,19 +80,36 @@ namespace Viscoplastic
 
 
   template <int dim>
-  double
-  total_estimate(const Vector<double>     &squared_estimate,
+  std::array<double, 2>
+  sum_over_cells(const Vector<double>     &values,
                  const Triangulation<dim> &triangulation)
   {
-    double total = 0.;
+    std::array<double, 2> sums{};
     for (const auto &cell : owned_cells(triangulation))
-      total += squared_estimate[cell->active_cell_index()];
-    return std::sqrt(
-      Utilities::MPI::sum(total, triangulation.get_communicator()));
+      {
+        const double value = values[cell->active_cell_index()];
+        sums[0] += value;
+        sums[1] += std::abs(value);
+      }
+    Utilities::MPI::sum(ArrayView<const double>(sums.data(), 2),
+                        triangulation.get_communicator(),
+                        ArrayView<double>(sums.data(), 2));
+    return sums;
   }
 
 
 
+  template <int dim>
+  double
+  total_estimate(const Vector<double>     &squared_estimate,
+                 const Triangulation<dim> &triangulation)
+  {
+    return std::sqrt(sum_over_cells(squared_estimate, triangulation)[0]);
+  }
+
+
+
+  VISCOPLASTIC_INSTANTIATE(sum_over_cells);
   VISCOPLASTIC_INSTANTIATE(total_estimate);
   VISCOPLASTIC_INSTANTIATE(strain_norm);
   VISCOPLASTIC_INSTANTIATE(kelly_estimate);

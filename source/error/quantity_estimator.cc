@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <viscoplastic_contact/error/error_estimator.h>
+#include <viscoplastic_contact/error/kelly_estimator.h>
 #include <viscoplastic_contact/error/quantity_estimator.h>
 
 namespace Viscoplastic
@@ -146,12 +147,8 @@ namespace Viscoplastic
     const auto                 size_of  = [&](const Vector<double> &parts) {
       if (parts.size() == 0) // on all ranks
         return 0.;
-      const double here[] = {parts.mean_value() * parts.size(),
-                             parts.l1_norm()};
-      double       sums[2];
-      Utilities::MPI::sum(ArrayView<const double>(here),
-                          d.space.communicator,
-                          ArrayView<double>(sums));
+      const auto sums =
+        sum_over_cells(parts, d.space.dof_handler.get_triangulation());
       return std::max(std::abs(sums[0]), least_share * sums[1]);
     };
     Vector<double> sides =
@@ -246,8 +243,8 @@ namespace Viscoplastic
     double                geometry    = 0.;
     if (of_geometry.size() > 0) // on all ranks
       {
-        geometry = std::sqrt(
-          Utilities::MPI::sum(of_geometry.l1_norm(), d.space.communicator));
+        geometry =
+          total_estimate(of_geometry, d.space.dof_handler.get_triangulation());
         Vector<double> &indicators = end.space_estimate.squared_indicators;
         if (indicators.size() > 0 && geometry > 0.)
           indicators.add(dual.norm / geometry, of_geometry);

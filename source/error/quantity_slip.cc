@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <viscoplastic_contact/error/kelly_estimator.h>
 #include <viscoplastic_contact/error/quantity_estimator.h>
 
 // What slip has settled of a quantity's error: where points come to rest, turn
@@ -100,8 +101,9 @@ namespace Viscoplastic
                                      space_estimator.residuals_of(dual),
                                      0.);
           space +=
-            sign * Utilities::MPI::sum(parts.mean_value() * parts.size(),
-                                       discretization.space.communicator);
+            sign *
+            sum_over_cells(
+              parts, discretization.space.dof_handler.get_triangulation())[0];
           if (!discretization.scene().has_viscosity())
             continue;
           const auto of_error = [&](const IrreversibleStress &error) {

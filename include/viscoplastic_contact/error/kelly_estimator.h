@@ -22,7 +22,14 @@ namespace Viscoplastic
   strain_norm(const AdmissibleSpace<dim> &space,
               const DistributedVector    &ghosted_u);
 
-  /// The root of the sum over all cells of all ranks. Collective.
+  /// The sum of the values of all cells, by active index, and that of their
+  /// sizes; rounded alike however the mesh came about. Collective.
+  template <int dim>
+  std::array<double, 2>
+  sum_over_cells(const Vector<double>     &values,
+                 const Triangulation<dim> &triangulation);
+
+  /// The root of the sum of the squares of all cells. Collective.
   template <int dim>
   double
   total_estimate(const Vector<double>     &squared_estimate,

@@ -144,11 +144,11 @@ namespace Viscoplastic
     QuantityEstimate          &estimate = end.errors.quantity;
     const QuantityOfInterest  &quantity = *d.scene().quantity;
     const DualSolution<dim>   &dual     = dual_of_step.solution;
-    const auto                 size_of  = [&](const Vector<double> &parts) {
+    const auto &triangulation = d.space.dof_handler.get_triangulation();
+    const auto  size_of       = [&](const Vector<double> &parts) {
       if (parts.size() == 0) // on all ranks
         return 0.;
-      const auto sums =
-        sum_over_cells(parts, d.space.dof_handler.get_triangulation());
+      const auto sums = sum_over_cells(parts, triangulation);
       return std::max(std::abs(sums[0]), least_share * sums[1]);
     };
     Vector<double> sides =
@@ -161,28 +161,17 @@ namespace Viscoplastic
           creep = creep_of(state, *end.rate, errors.creep_time);
         if (!dual_of_step.residuals)
           dual_of_step.residuals = space_estimator.residuals_of(dual);
-        const Vector<double> &of_dual  = dual_of_step.residuals->squares;
-        Vector<double>        products = space_estimator.multiply(
+        Vector<double> products = space_estimator.multiply(
           state, end.forces, *dual_of_step.residuals, creep.exponent);
         dual_problem.add_at_meetings(state, products);
-        Vector<double>      indicators(products);
-        std::vector<double> sums(3, 0.);
-        const auto          add_up = [&] {
-          sums.assign(3, 0.);
-          for (unsigned int c = 0; c < indicators.size(); ++c)
-            {
-              sums[0] += indicators[c];
-              sums[1] += of_dual[c];
-              sums[2] += safety * std::abs(indicators[c]);
-            }
-          Utilities::MPI::sum(sums, d.space.communicator, sums);
-        };
-        add_up();
+        Vector<double> indicators(products);
+        auto           sums = sum_over_cells(products, triangulation);
         // Forces forget what has crept, but nothing is known of the signs then.
         estimate.space_of_creep = 0.;
         if (quantity.is_force() && errors.energy_norm > 0.)
           estimate.space_of_creep =
-            std::min(1., errors.creep_path / errors.energy_norm) * sums[2];
+            std::min(1., errors.creep_path / errors.energy_norm) * safety *
+            sums[1];
         const double crept  = tangent && end.rate ?
                                 end.rate->relaxation_rate * errors.creep_time :
                                 0.;
@@ -211,23 +200,24 @@ namespace Viscoplastic
                                                    {1., {}},
                                                    dual_of_step.recovered);
             dual_problem.add_at_meetings(state, indicators);
-            add_up();
+            sums = sum_over_cells(indicators, triangulation);
             if (creeps)
               estimate.space_of_creep =
                 std::max(estimate.space_of_creep,
-                         std::min(1., crept) * least_share * sums[2]);
+                         std::min(1., crept) * least_share * safety * sums[1]);
             if (std::abs(of_residuals) > std::abs(sums[0]))
               {
                 indicators = products;
-                add_up();
+                sums       = sum_over_cells(products, triangulation);
               }
           }
         for (double &indicator : indicators)
           indicator = safety * std::abs(indicator);
-        mesh                    = dual_problem.sign() * sums[0];
-        estimate.dual_norm      = dual.norm;
-        estimate.dual_error     = std::sqrt(sums[1]);
-        estimate.unsigned_space = sums[2];
+        mesh               = dual_problem.sign() * sums[0];
+        estimate.dual_norm = dual.norm;
+        estimate.dual_error =
+          total_estimate(dual_of_step.residuals->squares, triangulation);
+        estimate.unsigned_space = safety * sums[1];
         if (end.space_estimate.squared_indicators.size() > 0)
           end.space_estimate.squared_indicators = std::move(indicators);
       }
@@ -243,8 +233,7 @@ namespace Viscoplastic
     double                geometry    = 0.;
     if (of_geometry.size() > 0) // on all ranks
       {
-        geometry =
-          total_estimate(of_geometry, d.space.dof_handler.get_triangulation());
+        geometry                   = total_estimate(of_geometry, triangulation);
         Vector<double> &indicators = end.space_estimate.squared_indicators;
         if (indicators.size() > 0 && geometry > 0.)
           indicators.add(dual.norm / geometry, of_geometry);

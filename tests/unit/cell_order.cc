@@ -5,6 +5,7 @@
 
 #include "body.h"
 #include <viscoplastic_contact/checkpoint/checkpoint.h>
+#include <viscoplastic_contact/error/kelly_estimator.h>
 #include <viscoplastic_contact/mesh/cell_order.h>
 
 namespace
@@ -25,6 +26,10 @@ namespace
   {
     std::vector<CellId>                  owned, ghosts, as_they_come;
     std::vector<types::global_dof_index> dofs;
+    /// Of a value that differs from cell to cell: in the order of the mesh, and
+    /// as the cells come.
+    std::array<double, 2> sums;
+    double                sum_as_they_come;
   };
 
 
@@ -67,8 +72,16 @@ namespace
       };
       add(owned_cells(this->dof_handler), result.owned);
       add(ghost_cells(this->dof_handler), result.ghosts);
+      Vector<double> values(this->triangulation.n_active_cells());
       for (const auto &cell : this->triangulation.active_cell_iterators())
-        result.as_they_come.push_back(cell->id());
+        {
+          result.as_they_come.push_back(cell->id());
+          if (cell->is_locally_owned())
+            values[cell->active_cell_index()] =
+              std::sin(1e3 * cell->center().norm());
+        }
+      result.sums             = sum_over_cells(values, this->triangulation);
+      result.sum_as_they_come = values.l1_norm();
       return result;
     }
   };
@@ -81,6 +94,7 @@ namespace
     EXPECT_EQ(one.owned, other.owned);
     EXPECT_EQ(one.ghosts, other.ghosts);
     EXPECT_EQ(one.dofs, other.dofs);
+    EXPECT_EQ(one.sums, other.sums);
   }
 
 
@@ -103,6 +117,9 @@ namespace
     // The detours have left traces.
     EXPECT_TRUE(Utilities::MPI::logical_or(after_detours.as_they_come !=
                                              expected.as_they_come,
+                                           MPI_COMM_WORLD));
+    EXPECT_TRUE(Utilities::MPI::logical_or(after_detours.sum_as_they_come !=
+                                             expected.sum_as_they_come,
                                            MPI_COMM_WORLD));
 
     // As in a restart.

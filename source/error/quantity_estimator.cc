@@ -143,20 +143,21 @@ namespace Viscoplastic
     QuantityEstimate          &estimate = end.errors.quantity;
     const QuantityOfInterest  &quantity = *d.scene().quantity;
     const DualSolution<dim>   &dual     = dual_of_step.solution;
-    const auto                 size_of  = [&](const Vector<double> &parts) {
-      if (parts.size() == 0) // on all ranks
-        return 0.;
+    const auto                 sums_of  = [&](const Vector<double> &parts) {
+      std::array<double, 2> sums{}; // with signs and without
+      if (parts.size() == 0)        // on all ranks
+        return sums;
       const double here[] = {parts.mean_value() * parts.size(),
                              parts.l1_norm()};
-      double       sums[2];
       Utilities::MPI::sum(ArrayView<const double>(here),
                           d.space.communicator,
-                          ArrayView<double>(sums));
-      return std::max(std::abs(sums[0]), least_share * sums[1]);
+                          ArrayView<double>(sums.data(), 2));
+      return sums;
     };
     Vector<double> sides =
       boundary_defects.missing_sides(state, dual.cartesian);
-    double mesh = 0., boundary = size_of(sides);
+    double mesh             = 0.;
+    estimate.space_at_least = estimate.unsigned_space = 0.;
     if (dual.norm > 0. || dual_problem.pieces_meet())
       {
         Creep creep{errors.creep_time, 0., 0.};
@@ -182,9 +183,8 @@ namespace Viscoplastic
         };
         add_up();
         // Forces forget what has crept, but nothing is known of the signs then.
-        estimate.space_of_creep = 0.;
         if (quantity.is_force() && errors.energy_norm > 0.)
-          estimate.space_of_creep =
+          estimate.space_at_least =
             std::min(1., errors.creep_path / errors.energy_norm) * sums[2];
         const double crept  = tangent && end.rate ?
                                 end.rate->relaxation_rate * errors.creep_time :
@@ -195,16 +195,8 @@ namespace Viscoplastic
           {
             const double of_residuals = sums[0];
             if (creeps)
-              {
-                Vector<double> of_sides;
-                indicators =
-                  products_of_creep(state, *end.rate, creep, law, of_sides);
-                if (const double size = size_of(of_sides); size > boundary)
-                  {
-                    boundary = size;
-                    sides    = std::move(of_sides);
-                  }
-              }
+              indicators =
+                products_of_creep(state, *end.rate, creep, law, sides);
             else
               indicators =
                 space_estimator.multiply_recovered(state,
@@ -216,8 +208,8 @@ namespace Viscoplastic
             dual_problem.add_at_meetings(state, indicators);
             add_up();
             if (creeps)
-              estimate.space_of_creep =
-                std::max(estimate.space_of_creep,
+              estimate.space_at_least =
+                std::max(estimate.space_at_least,
                          std::min(1., crept) * least_share * sums[2]);
             if (std::abs(of_residuals) > std::abs(sums[0]))
               {
@@ -234,9 +226,14 @@ namespace Viscoplastic
         if (end.space_estimate.squared_indicators.size() > 0)
           end.space_estimate.squared_indicators = std::move(indicators);
       }
+    // As those of cells, their signs may cancel by chance.
+    const auto [of_sides, size_of_sides] = sums_of(sides);
+    estimate.of_sides                    = dual_problem.sign() * of_sides;
+    estimate.space_at_least =
+      std::max(estimate.space_at_least, least_share * size_of_sides);
+    estimate.unsigned_space += size_of_sides;
     Vector<double> held =
       boundary_defects.held_friction(state, quantity, dual.cartesian);
-    boundary += size_of(held);
     for (const Vector<double> *const parts : {&sides, &held})
       if (Vector<double> &indicators = end.space_estimate.squared_indicators;
           indicators.size() > 0 && parts->size() > 0)
@@ -252,8 +249,8 @@ namespace Viscoplastic
         if (indicators.size() > 0 && geometry > 0.)
           indicators.add(dual.norm / geometry, of_geometry);
       }
-    estimate.of_boundary = boundary + geometry * estimate.dual_norm;
-    return mesh;
+    estimate.of_boundary = sums_of(held)[0] + geometry * estimate.dual_norm;
+    return mesh + estimate.of_sides;
   }
 
 
@@ -309,8 +306,9 @@ namespace Viscoplastic
     if (growth)
       {
         mesh = *growth * (before.space_correction - before.settled_space);
-        estimate.space_of_creep = *growth * before.space_of_creep;
+        estimate.space_at_least = *growth * before.space_at_least;
         estimate.unsigned_space = *growth * before.unsigned_space;
+        estimate.of_sides       = *growth * before.of_sides;
         estimate.of_boundary    = *growth * before.of_boundary;
         estimate.dual_norm      = dual.norm;
         estimate.dual_error     = before.dual_error;
@@ -332,9 +330,12 @@ namespace Viscoplastic
     const auto size_with = [&](const double settled, const double now) {
       return std::max(std::abs(settled + now), is_sum ? 0. : std::abs(now));
     };
-    estimate.space = std::max(safety * size_with(estimate.settled_space, mesh),
-                              estimate.space_of_creep) +
-                     estimate.of_boundary;
+    const double settled = estimate.settled_space;
+    estimate.space =
+      std::max({with_safety(settled + mesh, estimate.of_sides),
+                is_sum ? 0. : with_safety(mesh, estimate.of_sides),
+                estimate.space_at_least}) +
+      estimate.of_boundary;
     // A part of all forces changes forces by that part, also where the dual
     // solution is zero, as where all points slip.
     const auto of_swing = [&](const double energy_norm, const double share) {

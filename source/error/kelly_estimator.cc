@@ -85,6 +85,8 @@ namespace Viscoplastic
                  const Triangulation<dim> &triangulation)
   {
     std::array<double, 2> sums{};
+    if (values.size() == 0)
+      return sums;
     for (const auto &cell : owned_cells(triangulation))
       {
         const double value = values[cell->active_cell_index()];

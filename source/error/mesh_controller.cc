@@ -159,7 +159,7 @@ namespace Viscoplastic
     if (scene.quantity)
       {
         const QuantityEstimate &quantity = accepted.errors.quantity;
-        if (quantity.of_boundary > 0.)
+        if (quantity.of_boundary > 0. || quantity.of_sides != 0.)
           return false;
         if (quantity.unsigned_space == 0.)
           return true;
@@ -220,20 +220,21 @@ namespace Viscoplastic
     // happen to cancel, none of them may become larger. What is settled stays
     // as it is on any mesh; but of sums, it counts where it adds.
     constexpr double safety = QuantityEstimator<dim>::safety;
-    const double     now =
-      std::abs(quantity.space_correction - quantity.settled_space);
-    const double settled =
-                   safety *
-                   (scene.quantity->is_sum() ?
-                      std::abs(quantity.settled_space) :
-                      std::max(0., std::abs(quantity.space_correction) - now)),
-                 open    = std::max(0.1 * allowed, allowed - settled),
-                 of_mesh = std::max(safety * now, quantity.space_of_creep) +
-                           quantity.of_boundary,
-                 ratio = std::sqrt(
-                   std::max(of_mesh,
-                            std::min(quantity.unsigned_space, 0.9 * open)) /
-                   open);
+    const double     now = quantity.space_correction - quantity.settled_space;
+    const double
+      settled =
+        safety *
+        (scene.quantity->is_sum() ?
+           std::abs(quantity.settled_space) :
+           std::max(0., std::abs(quantity.space_correction) - std::abs(now))),
+      open = std::max(0.1 * allowed, allowed - settled),
+      of_mesh =
+        std::max(QuantityEstimator<dim>::with_safety(now, quantity.of_sides),
+                 quantity.space_at_least) +
+        quantity.of_boundary,
+      ratio = std::sqrt(
+        std::max(of_mesh, std::min(quantity.unsigned_space, 0.9 * open)) /
+        open);
     // A face that hardly slips for a while will slip again.
     return scene.quantity->is_sum() ? std::max(1., ratio) : ratio;
   }

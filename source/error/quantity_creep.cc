@@ -158,11 +158,9 @@ namespace Viscoplastic
     sides = boundary_defects.missing_sides(state, dual.cartesian);
     // The longer step moves the body more by the same force.
     if (discretization.scene().quantity->is_force())
-      {
-        products *= linearization.share;
-        if (sides.size() > 0)
-          sides *= linearization.share;
-      }
+      products *= linearization.share;
+    else if (sides.size() > 0)
+      sides /= linearization.share;
     return products;
   }
 

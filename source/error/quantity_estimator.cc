@@ -144,16 +144,11 @@ namespace Viscoplastic
     QuantityEstimate          &estimate = end.errors.quantity;
     const QuantityOfInterest  &quantity = *d.scene().quantity;
     const DualSolution<dim>   &dual     = dual_of_step.solution;
-    const auto &triangulation = d.space.dof_handler.get_triangulation();
-    const auto  size_of       = [&](const Vector<double> &parts) {
-      if (parts.size() == 0) // on all ranks
-        return 0.;
-      const auto sums = sum_over_cells(parts, triangulation);
-      return std::max(std::abs(sums[0]), least_share * sums[1]);
-    };
+    const auto    &triangulation = d.space.dof_handler.get_triangulation();
     Vector<double> sides =
       boundary_defects.missing_sides(state, dual.cartesian);
-    double mesh = 0., boundary = size_of(sides);
+    double mesh             = 0.;
+    estimate.space_at_least = estimate.unsigned_space = 0.;
     if (dual.norm > 0. || dual_problem.pieces_meet())
       {
         Creep creep{errors.creep_time, 0., 0.};
@@ -167,9 +162,8 @@ namespace Viscoplastic
         Vector<double> indicators(products);
         auto           sums = sum_over_cells(products, triangulation);
         // Forces forget what has crept, but nothing is known of the signs then.
-        estimate.space_of_creep = 0.;
         if (quantity.is_force() && errors.energy_norm > 0.)
-          estimate.space_of_creep =
+          estimate.space_at_least =
             std::min(1., errors.creep_path / errors.energy_norm) * safety *
             sums[1];
         const double crept  = tangent && end.rate ?
@@ -181,16 +175,8 @@ namespace Viscoplastic
           {
             const double of_residuals = sums[0];
             if (creeps)
-              {
-                Vector<double> of_sides;
-                indicators =
-                  products_of_creep(state, *end.rate, creep, law, of_sides);
-                if (const double size = size_of(of_sides); size > boundary)
-                  {
-                    boundary = size;
-                    sides    = std::move(of_sides);
-                  }
-              }
+              indicators =
+                products_of_creep(state, *end.rate, creep, law, sides);
             else
               indicators =
                 space_estimator.multiply_recovered(state,
@@ -202,8 +188,8 @@ namespace Viscoplastic
             dual_problem.add_at_meetings(state, indicators);
             sums = sum_over_cells(indicators, triangulation);
             if (creeps)
-              estimate.space_of_creep =
-                std::max(estimate.space_of_creep,
+              estimate.space_at_least =
+                std::max(estimate.space_at_least,
                          std::min(1., crept) * least_share * safety * sums[1]);
             if (std::abs(of_residuals) > std::abs(sums[0]))
               {
@@ -221,9 +207,14 @@ namespace Viscoplastic
         if (end.space_estimate.squared_indicators.size() > 0)
           end.space_estimate.squared_indicators = std::move(indicators);
       }
+    // As those of cells, their signs may cancel by chance.
+    const auto [of_sides, size_of_sides] = sum_over_cells(sides, triangulation);
+    estimate.of_sides                    = dual_problem.sign() * of_sides;
+    estimate.space_at_least =
+      std::max(estimate.space_at_least, least_share * size_of_sides);
+    estimate.unsigned_space += size_of_sides;
     Vector<double> held =
       boundary_defects.held_friction(state, quantity, dual.cartesian);
-    boundary += size_of(held);
     for (const Vector<double> *const parts : {&sides, &held})
       if (Vector<double> &indicators = end.space_estimate.squared_indicators;
           indicators.size() > 0 && parts->size() > 0)
@@ -238,8 +229,9 @@ namespace Viscoplastic
         if (indicators.size() > 0 && geometry > 0.)
           indicators.add(dual.norm / geometry, of_geometry);
       }
-    estimate.of_boundary = boundary + geometry * estimate.dual_norm;
-    return mesh;
+    estimate.of_boundary =
+      sum_over_cells(held, triangulation)[0] + geometry * estimate.dual_norm;
+    return mesh + estimate.of_sides;
   }
 
 
@@ -295,8 +287,9 @@ namespace Viscoplastic
     if (growth)
       {
         mesh = *growth * (before.space_correction - before.settled_space);
-        estimate.space_of_creep = *growth * before.space_of_creep;
+        estimate.space_at_least = *growth * before.space_at_least;
         estimate.unsigned_space = *growth * before.unsigned_space;
+        estimate.of_sides       = *growth * before.of_sides;
         estimate.of_boundary    = *growth * before.of_boundary;
         estimate.dual_norm      = dual.norm;
         estimate.dual_error     = before.dual_error;
@@ -318,9 +311,12 @@ namespace Viscoplastic
     const auto size_with = [&](const double settled, const double now) {
       return std::max(std::abs(settled + now), is_sum ? 0. : std::abs(now));
     };
-    estimate.space = std::max(safety * size_with(estimate.settled_space, mesh),
-                              estimate.space_of_creep) +
-                     estimate.of_boundary;
+    const double settled = estimate.settled_space;
+    estimate.space =
+      std::max({with_safety(settled + mesh, estimate.of_sides),
+                is_sum ? 0. : with_safety(mesh, estimate.of_sides),
+                estimate.space_at_least}) +
+      estimate.of_boundary;
     // A part of all forces changes forces by that part, also where the dual
     // solution is zero, as where all points slip.
     const auto of_swing = [&](const double energy_norm, const double share) {

@@ -674,13 +674,13 @@ class PointInCreep(TestCase):
         "Output/Fields every": 0,
     }
 
-    def check(self, **law):
+    def check(self, level=2, **law):
         def cylinder(refinements, **more):
             overrides = {**self.SCENE, **law, **more}
             overrides["Geometry/Global refinements"] = refinements
             return run("hard/norton_cylinder", overrides)
 
-        result = cylinder(2, **of("point0_x"))
+        result = cylinder(level, **of("point0_x"))
         error = np.abs(cylinder(4)["point0_x"] - result["point0_x"])
         ends = [6, 12, 18, 24]
         quotient = result["quantity_space"][ends] / error[ends]
@@ -693,16 +693,30 @@ class PointInCreep(TestCase):
     def test_linear(self):
         law = {"Material/Law": "maxwell", "Material/maxwell/Viscosity": 0.5}
         signed = self.check(**law)
-        # measured: 1.09 to 1.15 (0.97 to 1.03 with means by volume, which do not meet
-        # linear strains beside hanging nodes); 0.11 where planes of symmetry are
-        # boundaries
+        # measured: 1.26 at most, 1.09 to 1.15 of it from cells (0.97 to 1.03 with means by
+        # volume, which do not meet linear strains beside hanging nodes), the rest from
+        # straight sides; 0.11 where planes of symmetry are boundaries
         self.assertGreater(signed.min(), 0.85)
-        self.assertLess(signed.max(), 1.2)
+        self.assertLess(signed.max(), 1.35)
 
     def test_power_law(self):
         signed = self.check(**{"Material/norton/Exponent": 5})
         # measured: 1.11, 1.06 and 1.06 (of it 0.06 are errors of the fine mesh); 0.9
         # where planes of symmetry are boundaries
+        self.assertGreater(signed[1:].min(), 0.95)
+        self.assertLess(signed[1:].max(), 1.2)
+
+    def test_beside_a_finer_layer(self):
+        """Straight sides and coarse cells err in opposite directions."""
+        signed = self.check(
+            level=1,
+            **{
+                "Material/norton/Exponent": 5,
+                "Geometry/Boundary refinements": "0: 1",
+            },
+        )
+        # measured: 1.06 to 1.02, the bar 2.1; without sides 1.66 to 1.62, and 3.7 where
+        # their size is added
         self.assertGreater(signed[1:].min(), 0.95)
         self.assertLess(signed[1:].max(), 1.2)
 
@@ -821,8 +835,9 @@ class PointInCreep(TestCase):
             # measured: 2.2, 2.3; by residuals alone 0.54, 0.53
             self.assertGreater(result["quantity_space"][-1] / error, 0.7)
             self.assertLess(result["quantity_space"][-1] / error, 3)
-            # measured: 1.02, 1.06; by residuals 0.18, 0.17
-            self.assertClose(result["quantity_correction"][-1], error, 0.15)
+            # measured: 1.11, 1.22 (1.02, 1.06 without straight sides, but 1.9 beside
+            # a finer layer, 1.4 with them); by residuals 0.18, 0.17
+            self.assertClose(result["quantity_correction"][-1], error, 0.3)
 
     def test_hot(self):
         """A dual solution that is singular beside a smooth state, also where this begins

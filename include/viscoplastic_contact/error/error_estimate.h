@@ -77,11 +77,11 @@ namespace Viscoplastic
     /// The sum of what the cells contribute to the error of the mesh, without
     /// signs.
     double unsigned_space = 0.;
-    /// The error of the mesh that has accumulated by creep, sum of absolute
-    /// values.
-    double space_of_creep = 0.;
-    /// The error from the boundary, see BoundaryDefects.
-    double of_boundary = 0.;
+    /// A share of it that counts at least, as signs may cancel by chance.
+    double space_at_least = 0.;
+    /// The part of the present error of the mesh that is of straight sides, and
+    /// what has no sign of the boundary (BoundaryDefects).
+    double of_sides = 0., of_boundary = 0.;
     /// Errors of slip that turns and of slip that comes to rest within steps
     /// (SlipDefects), summed over the steps.
     double turning = 0., resting = 0.;
@@ -98,8 +98,8 @@ namespace Viscoplastic
     {
       ErrorParts::exchange(archive);
       archive &value &space_correction &time_correction &settled_space
-        &settled_time &rest_space &rest_time &unsigned_space &space_of_creep
-          &of_boundary &turning &resting &dual_norm &dual_error;
+        &settled_time &rest_space &rest_time &unsigned_space &space_at_least
+          &of_sides &of_boundary &turning &resting &dual_norm &dual_error;
     }
   };
 

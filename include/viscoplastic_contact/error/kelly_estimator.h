@@ -23,7 +23,8 @@ namespace Viscoplastic
               const DistributedVector    &ghosted_u);
 
   /// The sum of the values of all cells, by active index, and that of their
-  /// sizes; rounded alike however the mesh came about. Collective.
+  /// sizes; rounded alike however the mesh came about. Zero without values, on
+  /// all ranks. Collective.
   template <int dim>
   std::array<double, 2>
   sum_over_cells(const Vector<double>     &values,

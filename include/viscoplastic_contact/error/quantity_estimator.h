@@ -39,7 +39,8 @@ namespace Viscoplastic
   ///   The larger of this and of a(e_u, e_w) counts. T is t under steady loads,
   ///   less while they grow, and has no bound where stress relaxes: C and what
   ///   forces remember fade as it does.
-  /// - the boundary: BoundaryDefects, which R does not know.
+  /// - the boundary: BoundaryDefects, which R does not know. What straight
+  ///   sides miss has a sign, like the mesh.
   /// - time steps: R_z(w) = -(D, eps(w)) with the sum D of the defects of all
   ///   steps (see ErrorEstimator).
   /// - slip that turns or comes to rest within a step is wrong by defects d_c
@@ -79,6 +80,17 @@ namespace Viscoplastic
     /// knows nothing of what the meshes before have done to z, or of fronts of
     /// slip between nodes. How large that may be: doc/error_bar.md.
     static constexpr double safety = 2.;
+
+    /// What counts of an error of the mesh with its sign. What straight sides
+    /// have of it is exact and counts once, unless it hides that of the cells.
+    static double
+    with_safety(const double error, const double of_sides)
+    {
+      return std::abs(error) +
+             (safety - 1.) *
+               std::min(std::abs(error), std::abs(error - of_sides));
+    }
+
     /// A quantity that is less than this of what it could be is rounding.
     static constexpr double nothing = 1e-9;
     /// The part of a relaxation time below which a cell counts as elastic.

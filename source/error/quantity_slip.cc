@@ -50,7 +50,6 @@ namespace Viscoplastic
   QuantityEstimator<dim>::hold(BulkSolver                &solver,
                                const EvaluatedState<dim> &accepted,
                                const ContactState        &contact,
-                               const double               rested,
                                const CoulombLaw          *law,
                                ErrorEstimate             &errors) const
   {
@@ -79,10 +78,7 @@ namespace Viscoplastic
                         discretization.space.communicator,
                         ArrayView<double>(sums));
     const double share = sums[0] > 0. ? sums[1] / sums[0] : 0.;
-    // Of what comes to rest, with the error of z that forces remember, and
-    // with all of it.
-    double     space = 0., time = 0., moved = 0.;
-    const bool is_force = discretization.scene().quantity->is_force();
+    double       space = 0.; // of what comes to rest
     // Where the run begins points are where they are by definition.
     const bool settles =
       accepted.state.k > 0. && discretization.face->layout().any(has_rest);
@@ -102,28 +98,11 @@ namespace Viscoplastic
           space +=
             sign * Utilities::MPI::sum(parts.mean_value() * parts.size(),
                                        discretization.space.communicator);
-          if (!discretization.scene().has_viscosity())
-            continue;
-          const auto of_error = [&](const IrreversibleStress &error) {
-            DistributedVector load = discretization.space.owned_vector();
-            add_irreversible_load(discretization.stress_space, error, load);
-            return sign * (load * dual.w);
-          };
-          moved += of_error(accepted.state.time_error);
-          if (is_force)
-            time += (is_held ? 1. - rested : 1.) *
-                    of_error(accepted.state.remembered_error);
         }
-    if (!is_force)
-      time = moved;
-    estimate.rest_space    = share * before.rest_space + space;
-    estimate.rest_time     = share * before.rest_time + moved;
-    const double kept      = is_force ? errors.remembered_share : 1.,
-                 gained    = is_force ? errors.remembered_gain : 0.;
-    estimate.settled_space = kept * (share * before.settled_space + space) +
-                             gained * estimate.rest_space;
-    estimate.settled_time =
-      kept * (share * before.settled_time + time) + gained * estimate.rest_time;
+    estimate.rest_space = share * before.rest_space + space;
+    estimate.settled_space =
+      errors.remembered_share * (share * before.settled_space + space) +
+      errors.remembered_gain * estimate.rest_space;
   }
 
 

@@ -46,7 +46,7 @@ namespace Viscoplastic
                carries =
                  estimates && scene.quantity && !scene.quantity->is_sum(),
                has_slopes =
-                 (carries && scene.quantity->is_force()) ||
+                 carries ||
                  (estimates &&
                   time_defect(scene.parameters.time.scheme).second != 0.),
                has_history = scene.has_history();

@@ -267,13 +267,27 @@ namespace Viscoplastic
   {
     const AdmissibleSpace<dim> &space = discretization.space;
     State<dim>                 &state = end.state;
-    DistributedVector           load = space.owned_vector(), u = load;
-    add_irreversible_load(discretization.stress_space,
-                          state.carried_error,
-                          load);
+    DistributedVector           u     = space.owned_vector();
+    const auto                  solve = [&](const ContactState       &contact,
+                           const IrreversibleStress &error) {
+      DistributedVector load = space.owned_vector();
+      add_irreversible_load(discretization.stress_space, error, load);
+      dual_problem.solve_linearized(solver, contact, law, load, u);
+    };
     if (old.carried_error_of_u.size() > 0)
-      space.to_frames(old.carried_error_of_u, u);
-    dual_problem.solve_linearized(solver, state.contact, law, load, u);
+      {
+        space.to_frames(old.carried_error_of_u, u);
+        // Points come to rest where the error of z that has relaxed since has
+        // moved them.
+        bool rests = false;
+        if (discretization.slipping_face())
+          for (unsigned int p = 0; p < state.contact.n_points(); ++p)
+            rests |= holds(state.contact, p) && !holds(old.contact, p);
+        if (discretization.slipping_face() &&
+            discretization.face->layout().any(rests))
+          solve(old.contact, old.carried_error);
+      }
+    solve(state.contact, state.carried_error);
     state.carried_error_of_u = space.ghosted_vector();
     space.to_cartesian(u, state.carried_error_of_u);
     relax_carried_error(discretization.laws, old, end);

@@ -46,6 +46,17 @@ namespace Viscoplastic
 
 
   template <int dim>
+  bool
+  QuantityEstimator<dim>::holds(const ContactState &contact,
+                                const unsigned int  p) const
+  {
+    return !discretization.face->layout().points[p].is_obstacle &&
+           contact.sticks[p] && contact.bound[p] > 0.;
+  }
+
+
+
+  template <int dim>
   void
   QuantityEstimator<dim>::hold(BulkSolver                &solver,
                                const EvaluatedState<dim> &accepted,
@@ -56,13 +67,9 @@ namespace Viscoplastic
     const QuantityEstimate &before   = accepted.errors.quantity;
     QuantityEstimate       &estimate = errors.quantity;
     const ContactState     &old      = accepted.state.contact;
-    const auto holds = [&](const ContactState &c, const unsigned int p) {
-      return !discretization.face->layout().points[p].is_obstacle &&
-             c.sticks[p] && c.bound[p] > 0.;
-    };
-    ContactState held     = old;
-    bool         has_rest = false;
-    double       sums[2] = {0., 0.}; // bounds of what has stuck, and still does
+    ContactState            held     = old;
+    bool                    has_rest = false;
+    double sums[2] = {0., 0.}; // bounds of what has stuck, and still does
     for (unsigned int p = 0; p < contact.n_points(); ++p)
       if (holds(old, p))
         {
@@ -140,6 +147,7 @@ namespace Viscoplastic
 
 
   VISCOPLASTIC_INSTANTIATE_MEMBER(QuantityEstimator, settle);
+  VISCOPLASTIC_INSTANTIATE_MEMBER(QuantityEstimator, holds);
   VISCOPLASTIC_INSTANTIATE_MEMBER(QuantityEstimator, hold);
   VISCOPLASTIC_INSTANTIATE_MEMBER(QuantityEstimator, add_slip_defects);
 } // namespace Viscoplastic

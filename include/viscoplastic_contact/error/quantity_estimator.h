@@ -208,6 +208,10 @@ namespace Viscoplastic
            const ContactState        &contact,
            QuantityEstimate          &estimate) const;
 
+    /// Whether friction holds a point.
+    bool
+    holds(const ContactState &contact, const unsigned int p) const;
+
     /// Settle the error with which points come to rest in a step, unless the
     /// quantity is a sum. Collective.
     void

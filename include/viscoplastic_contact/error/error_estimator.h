@@ -40,11 +40,11 @@ namespace Viscoplastic
   /// a(e_u, v) = -(e_z, eps(v)), the norm (int E^-1 D : D)^{1/2} bounds their
   /// effect on u. That errors of z relax, too, is left out: where the stress
   /// follows from the loads it does not happen. In linear laws that depend on
-  /// the strain, what makes no stress fades all the same. Forces feel only what
-  /// makes stress, and that relaxes with the law's own tangent in them. History
-  /// variables have such a sum of their own; what becomes of it in a step, and
-  /// what it does to G meanwhile, is the difference of two steps at the same
-  /// stress.
+  /// the strain, what makes no stress fades all the same. What quantities of
+  /// interest feel is carried on beside D, with the error of u that it makes
+  /// (QuantityEstimator::carry_time_error()). History variables have such a sum
+  /// of their own; what becomes of it in a step, and what it does to G
+  /// meanwhile, is the difference of two steps at the same stress.
   ///
   /// Friction: slip that turns in a step has the direction of its end. In an
   /// elastic body the error of what is linear between the steps satisfies

@@ -111,32 +111,23 @@ namespace Viscoplastic
 
 
 
-  SlipChange
-  slip_change(const ContactLayout &face,
-              const ContactState  &old_state,
-              const ContactState  &state)
+  double
+  slip_begun(const ContactLayout &face,
+             const ContactState  &old_state,
+             const ContactState  &state)
   {
-    double slipping = 0., begun = 0., held = 0., rested = 0.;
+    double slipping = 0., begun = 0.;
     for (unsigned int p = 0; p < state.n_points(); ++p)
-      if (const double bound = state.bound[p];
-          !face.points[p].is_obstacle && std::isfinite(bound))
+      if (const double bound = state.bound[p]; !face.points[p].is_obstacle &&
+                                               std::isfinite(bound) &&
+                                               !state.sticks[p])
         {
-          const bool slipped = !old_state.sticks[p];
-          (state.sticks[p] ? held : slipping) += bound;
-          if (state.sticks[p] && (slipped || old_state.bound[p] == 0.))
-            rested += bound;
-          else if (!state.sticks[p] &&
-                   !(slipped &&
-                     old_state.multiplier[p] * state.multiplier[p] > 0.))
+          slipping += bound;
+          if (old_state.sticks[p] ||
+              !(old_state.multiplier[p] * state.multiplier[p] > 0.))
             begun += bound;
         }
-    const auto part = [&face](const double some, const double all) {
-      const double of_all = face.sum(all);
-      return of_all > 0. ? face.sum(some) / of_all : 0.;
-    };
-    SlipChange change;
-    change.begun  = part(begun, slipping);
-    change.rested = part(rested, held);
-    return change;
+    slipping = face.sum(slipping);
+    return slipping > 0. ? face.sum(begun) / slipping : 0.;
   }
 } // namespace Viscoplastic

@@ -17,6 +17,9 @@ namespace Viscoplastic
     /// estimate needs. In short steps rho/|s| is beyond all measure, and the
     /// preconditioner is not made anew for it.
     constexpr double stiffest_spring = 1e3;
+    /// The tolerance is relative to where a solve begins, which may have this
+    /// times the energy norm of the solution before corrections are corrected.
+    constexpr double enough = 30.;
 
 
 
@@ -410,7 +413,8 @@ namespace Viscoplastic
   FaceTruncation
   DualProblem<dim>::truncation(const BulkSolver   &solver,
                                const ContactState &contact,
-                               const CoulombLaw   *law) const
+                               const CoulombLaw   *law,
+                               const bool          transposed) const
   {
     const ContactLayout &face   = discretization.face->layout();
     ContactState         linear = contact;
@@ -427,9 +431,10 @@ namespace Viscoplastic
       make_truncation(face, linear, inverse_diagonal, stiffest_spring);
     if (law != nullptr)
       law->tilt(face, linear, inverse_diagonal, result, stiffest_spring);
-    for (Tensor<2, 3> &spring : result.spring)
-      spring = transpose(spring);
-    result.transposed = true;
+    if (transposed)
+      for (Tensor<2, 3> &spring : result.spring)
+        spring = transpose(spring);
+    result.transposed = transposed;
     return result;
   }
 
@@ -446,7 +451,8 @@ namespace Viscoplastic
     const ContactFace<dim> *face = discretization.slipping_face();
     DualSolution<dim>       result;
     if (face != nullptr)
-      result.truncation = truncation(solver, contact, law);
+      result.truncation =
+        truncation(solver, contact, law, /* transposed = */ true);
     if (dual.w.size() > 0 && !quantity.is_sum() &&
         (face == nullptr ||
          result.truncation.equals(dual.truncation, face->layout())))
@@ -465,10 +471,8 @@ namespace Viscoplastic
       solver.solve(load, result.w, dual_tolerance, scale);
     else if (!is_zero)
       {
-        // The tolerance is relative to where it begins, which may have much
-        // more energy than w. What a few corrections leave is beyond the digits
-        // of that, and asked for below.
-        constexpr double enough = 30.;
+        // What a few corrections leave is beyond the digits of where they
+        // begin, and asked for below.
         solve_truncated(*solver.begin(load, result.w, scale),
                         face->layout(),
                         result.truncation,
@@ -480,6 +484,42 @@ namespace Viscoplastic
     complete(matrix, load, result);
     dual = std::move(result);
     return true;
+  }
+
+
+
+  template <int dim>
+  void
+  DualProblem<dim>::solve_linearized(BulkSolver              &solver,
+                                     const ContactState      &contact,
+                                     const CoulombLaw        *law,
+                                     const DistributedVector &load,
+                                     DistributedVector       &u) const
+  {
+    if (load.l2_norm() == 0. && u.l2_norm() == 0.)
+      return;
+    const ContactFace<dim> *face = discretization.slipping_face();
+    if (face == nullptr)
+      {
+        solver.solve(load, u, dual_tolerance);
+        return;
+      }
+    // What touches the foundation is not off it, whatever it was before.
+    const ContactLayout &layout   = face->layout();
+    ContactState         touching = contact;
+    for (unsigned int p = 0; p < touching.n_points(); ++p)
+      touching.sticks[p] =
+        layout.points[p].is_obstacle && contact.multiplier[p][0] > 0.;
+    Vector<double> on_face = face->restriction().gather(u);
+    make_truncation(layout, touching, {}).project(layout, on_face);
+    face->restriction().set(on_face, u);
+    solve_truncated(*solver.begin(load, u),
+                    layout,
+                    truncation(solver, contact, law, /* transposed = */ false),
+                    /* is_kept = */ false,
+                    Vector<double>(layout.n_dofs()),
+                    dual_tolerance,
+                    enough);
   }
 
 

@@ -43,17 +43,17 @@ namespace Viscoplastic
   {
     const bool estimates = scene.parameters.error_control.error_estimator &&
                            scene.has_viscosity(),
-               remembers =
-                 estimates && scene.quantity && scene.quantity->is_force(),
+               carries =
+                 estimates && scene.quantity && !scene.quantity->is_sum(),
                has_slopes =
-                 remembers ||
+                 carries ||
                  (estimates &&
                   time_defect(scene.parameters.time.scheme).second != 0.),
                has_history = scene.has_history();
     return {{scene.has_irreversible_stress(),
              estimates,
              has_slopes,
-             remembers,
+             carries,
              has_history,
              has_history && estimates,
              has_history && has_slopes}};
@@ -137,7 +137,7 @@ namespace Viscoplastic
                               const TimeDefect          &defect,
                               const ContactReport       &report,
                               const SlipDefects         *slip_defects,
-                              const SlipChange          &slip_change,
+                              const double               slip_begun,
                               const double               missed_work,
                               const Swing               &swing,
                               const bool                 is_fresh,
@@ -164,7 +164,7 @@ namespace Viscoplastic
     estimate.algebraic   = report.error;
 
     estimate.creep_path = before.creep_path;
-    estimate.slip_begun = slip_change.begun;
+    estimate.slip_begun = slip_begun;
     if (scene.has_viscosity())
       {
         Assert(accepted_rate != nullptr && end.rate,
@@ -181,7 +181,6 @@ namespace Viscoplastic
                    /* has_slope = */ accepted.state.k > 0. && !is_fresh &&
                      before.slip_begun < 0.5,
                    onset,
-                   slip_change.rested,
                    accepted,
                    *accepted_rate,
                    end);

@@ -238,9 +238,76 @@ namespace Viscoplastic
 
   template <int dim>
   void
+  QuantityEstimator<dim>::carry_time_error(BulkSolver          &solver,
+                                           const CoulombLaw    *law,
+                                           const State<dim>    &old,
+                                           EvaluatedState<dim> &end) const
+  {
+    const AdmissibleSpace<dim> &space = discretization.space;
+    State<dim>                 &state = end.state;
+    DistributedVector           u     = space.owned_vector();
+    const auto                  solve = [&](const ContactState       &contact,
+                           const IrreversibleStress &error) {
+      DistributedVector load = space.owned_vector();
+      add_irreversible_load(discretization.stress_space, error, load);
+      dual_problem.solve_linearized(solver, contact, law, load, u);
+    };
+    if (old.carried_error_of_u.size() > 0)
+      {
+        space.to_frames(old.carried_error_of_u, u);
+        // Points come to rest where the error of z that has relaxed since has
+        // moved them.
+        bool rests = false;
+        if (discretization.slipping_face())
+          for (unsigned int p = 0; p < state.contact.n_points(); ++p)
+            rests |= holds(state.contact, p) && !holds(old.contact, p);
+        if (discretization.slipping_face() &&
+            discretization.face->layout().any(rests))
+          solve(old.contact, old.carried_error);
+      }
+    solve(state.contact, state.carried_error);
+    state.carried_error_of_u = space.ghosted_vector();
+    space.to_cartesian(u, state.carried_error_of_u);
+    relax_carried_error(discretization.laws, old, end);
+  }
+
+
+
+  template <int dim>
+  double
+  QuantityEstimator<dim>::time_error(const State<dim> &state) const
+  {
+    const Discretization<dim> &d      = discretization;
+    const bool                 is_sum = d.scene().quantity->is_sum();
+    const DualSolution<dim>   &dual   = dual_of_step.solution;
+    DistributedVector          load   = d.space.owned_vector();
+    add_irreversible_load(d.stress_space,
+                          is_sum ? state.time_error : state.carried_error,
+                          load);
+    double error = dual.norm > 0. ? load * dual.w : 0.;
+    if (!is_sum && d.slipping_face())
+      {
+        DistributedVector u = d.space.owned_vector();
+        d.space.to_frames(state.carried_error_of_u, u);
+        const ContactLayout &face = d.face->layout();
+        Vector<double> moves = d.face->restriction().gather(u), free = moves;
+        dual.truncation.project(face, free);
+        double held = 0.;
+        for (unsigned int node = 0; node < face.n_nodes(); ++node)
+          held +=
+            face.node_values(dual.force, node) *
+            (face.node_values(moves, node) - face.node_values(free, node));
+        error += face.sum(held);
+      }
+    return dual_problem.sign() * error;
+  }
+
+
+
+  template <int dim>
+  void
   QuantityEstimator<dim>::assess(BulkSolver                  &solver,
                                  const SlipDefects           *slip_defects,
-                                 const SlipChange            &slip_change,
                                  const std::optional<double> &growth,
                                  const EvaluatedState<dim>   &accepted,
                                  EvaluatedState<dim>         &end) const
@@ -265,13 +332,12 @@ namespace Viscoplastic
 
     const std::optional<CoulombLaw> law = law_of_step(accepted.state, state);
     const CoulombLaw *const         linearized = law ? &*law : nullptr;
+    const bool                      carries =
+      !is_sum && d.scene().has_viscosity() && state.k > 0.; // collective
+    if (carries)
+      carry_time_error(solver, linearized, accepted.state, end);
     if (!is_sum && d.slipping_face())
-      hold(solver,
-           accepted,
-           state.contact,
-           slip_change.rested,
-           linearized,
-           end.errors);
+      hold(solver, accepted, state.contact, linearized, end.errors);
     renew(solver, d.matrix, state.contact, linearized, dual_of_step);
     const DualSolution<dim> &dual = dual_of_step.solution;
     // |J| <= a(w, w)^{1/2} a(u, u)^{1/2}; of a force that statics fixes w is a
@@ -296,15 +362,8 @@ namespace Viscoplastic
       }
     else
       mesh = assess_mesh(linearized, end);
-    if (dual.norm > 0. && d.scene().has_viscosity()) // collective
-      {
-        DistributedVector load = d.space.owned_vector();
-        add_irreversible_load(d.stress_space,
-                              quantity.is_force() ? state.remembered_error :
-                                                    state.time_error,
-                              load);
-        time = dual_problem.sign() * (load * dual.w);
-      }
+    if (carries || (is_sum && d.scene().has_viscosity()))
+      time = time_error(state);
     estimate.space_correction = estimate.settled_space + mesh;
     estimate.time_correction  = estimate.settled_time + time;
     // Signs that happen to cancel at one time do not at others.

@@ -47,24 +47,30 @@ namespace Viscoplastic
 
 
   template <int dim>
+  bool
+  QuantityEstimator<dim>::holds(const ContactState &contact,
+                                const unsigned int  p) const
+  {
+    return !discretization.face->layout().points[p].is_obstacle &&
+           contact.sticks[p] && contact.bound[p] > 0.;
+  }
+
+
+
+  template <int dim>
   void
   QuantityEstimator<dim>::hold(BulkSolver                &solver,
                                const EvaluatedState<dim> &accepted,
                                const ContactState        &contact,
-                               const double               rested,
                                const CoulombLaw          *law,
                                ErrorEstimate             &errors) const
   {
     const QuantityEstimate &before   = accepted.errors.quantity;
     QuantityEstimate       &estimate = errors.quantity;
     const ContactState     &old      = accepted.state.contact;
-    const auto holds = [&](const ContactState &c, const unsigned int p) {
-      return !discretization.face->layout().points[p].is_obstacle &&
-             c.sticks[p] && c.bound[p] > 0.;
-    };
-    ContactState held     = old;
-    bool         has_rest = false;
-    double       sums[2] = {0., 0.}; // bounds of what has stuck, and still does
+    ContactState            held     = old;
+    bool                    has_rest = false;
+    double sums[2] = {0., 0.}; // bounds of what has stuck, and still does
     for (unsigned int p = 0; p < contact.n_points(); ++p)
       if (holds(old, p))
         {
@@ -80,10 +86,7 @@ namespace Viscoplastic
                         discretization.space.communicator,
                         ArrayView<double>(sums));
     const double share = sums[0] > 0. ? sums[1] / sums[0] : 0.;
-    // Of what comes to rest, with the error of z that forces remember, and
-    // with all of it.
-    double     space = 0., time = 0., moved = 0.;
-    const bool is_force = discretization.scene().quantity->is_force();
+    double       space = 0.; // of what comes to rest
     // Where the run begins points are where they are by definition.
     const bool settles =
       accepted.state.k > 0. && discretization.face->layout().any(has_rest);
@@ -104,28 +107,11 @@ namespace Viscoplastic
             sign *
             sum_over_cells(
               parts, discretization.space.dof_handler.get_triangulation())[0];
-          if (!discretization.scene().has_viscosity())
-            continue;
-          const auto of_error = [&](const IrreversibleStress &error) {
-            DistributedVector load = discretization.space.owned_vector();
-            add_irreversible_load(discretization.stress_space, error, load);
-            return sign * (load * dual.w);
-          };
-          moved += of_error(accepted.state.time_error);
-          if (is_force)
-            time += (is_held ? 1. - rested : 1.) *
-                    of_error(accepted.state.remembered_error);
         }
-    if (!is_force)
-      time = moved;
-    estimate.rest_space    = share * before.rest_space + space;
-    estimate.rest_time     = share * before.rest_time + moved;
-    const double kept      = is_force ? errors.remembered_share : 1.,
-                 gained    = is_force ? errors.remembered_gain : 0.;
-    estimate.settled_space = kept * (share * before.settled_space + space) +
-                             gained * estimate.rest_space;
-    estimate.settled_time =
-      kept * (share * before.settled_time + time) + gained * estimate.rest_time;
+    estimate.rest_space = share * before.rest_space + space;
+    estimate.settled_space =
+      errors.remembered_share * (share * before.settled_space + space) +
+      errors.remembered_gain * estimate.rest_space;
   }
 
 
@@ -163,6 +149,7 @@ namespace Viscoplastic
 
 
   VISCOPLASTIC_INSTANTIATE_MEMBER(QuantityEstimator, settle);
+  VISCOPLASTIC_INSTANTIATE_MEMBER(QuantityEstimator, holds);
   VISCOPLASTIC_INSTANTIATE_MEMBER(QuantityEstimator, hold);
   VISCOPLASTIC_INSTANTIATE_MEMBER(QuantityEstimator, add_slip_defects);
 } // namespace Viscoplastic

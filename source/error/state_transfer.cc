@@ -40,6 +40,7 @@ namespace Viscoplastic
                   state.velocity,
                   state.initial_u,
                   state.friction_work,
+                  state.carried_error_of_u,
                   multiplier_density ? *multiplier_density :
                                        DistributedVector()}}
     , field_transfer(old_stress_space.space.dof_handler)
@@ -225,11 +226,12 @@ namespace Viscoplastic
     result.state.t = t;
     result.state.k = k;
 
-    const std::array<DistributedVector *, 5> targets{
+    const std::array<DistributedVector *, 6> targets{
       {&result.state.u,
        &result.state.velocity,
        &result.state.initial_u,
        &result.state.friction_work,
+       &result.state.carried_error_of_u,
        &result.multiplier_density}};
     std::vector<DistributedVector>   fields;
     std::vector<DistributedVector *> field_pointers;

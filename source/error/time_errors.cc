@@ -108,6 +108,111 @@ namespace Viscoplastic
     }
 
 
+    /// What is true of the defect k (G_n - G_{n-1})/2 of a step of backward
+    /// Euler in which G decays exponentially, by its relaxation 1/(1 + x): to
+    /// 15 %, the exact part is 2 (1 + x) (1 - (1 + x) exp(-x))/x^2.
+    ErrorRelaxation
+    defect_of_decay(const ErrorRelaxation &relaxation)
+    {
+      ErrorRelaxation result = relaxation;
+      if (relaxation.any)
+        {
+          const SymmetricTensor<4, 3> one = identity_tensor<3>(),
+                                      x   = invert(*relaxation.any) - one;
+          result.any = invert(one + 1. / 3. * x + 0.5 * (x * x)) * (one + x);
+          return result;
+        }
+      const auto part = [](const double left) {
+        const double x = 1. / left - 1.;
+        return (1. + x) / (1. + x / 3. + 0.5 * x * x);
+      };
+      const double square = relaxation.direction * relaxation.direction;
+      result.of_deviators = part(relaxation.of_deviators);
+      if (square > 0.)
+        result.more_along =
+          (part(relaxation.of_deviators + square * relaxation.more_along) -
+           result.of_deviators) /
+          square;
+      return result;
+    }
+
+
+
+    /// What becomes of errors of z in a step, cell by cell.
+    template <int dim>
+    class ErrorDecay
+    {
+    public:
+      ErrorDecay(const FlowLaws<dim> &laws,
+                 const State<dim>    &old,
+                 const State<dim>    &end)
+        : stress_space(laws.stress_space)
+        , now(laws.at(end.t, old.history))
+        , k(end.k)
+      {}
+
+      /// Set what all samples of a cell have in common.
+      void
+      enter(const std::size_t c)
+      {
+        const ViscoplasticLaw *last_law       = law;
+        const Stiffness       *last_stiffness = stiffness;
+        law                                   = now.law(c);
+        stiffness                             = &stress_space.moduli(c);
+        // The same in all cells of most bodies.
+        if (c > 0 && law == last_law && stiffness == last_stiffness &&
+            !(law && now.varies_in_space(c)))
+          return;
+        growth = law ?
+                   growth_with_strain(*law, k, *stiffness, now.point(c, 0)) :
+                   std::nullopt;
+        if (growth)
+          fading = invert(identity_tensor<3>() + *growth);
+        is_uniform =
+          law && law->has_constant_tangents() && !now.varies_in_space(c);
+        relaxation = {};
+        is_known   = law == nullptr;
+        cell       = c;
+      }
+
+      /// What stress at a given strain leaves of its error, at a sample of this
+      /// cell.
+      const ErrorRelaxation &
+      relaxation_at(const SymmetricTensor<2, 3> &stress,
+                    const SymmetricTensor<2, 3> &strain,
+                    const LawPoint              &point)
+      {
+        if (!is_known)
+          relaxation =
+            is_uniform ?
+              error_relaxation(
+                *law, {}, {}, k, *stiffness, now.point(cell, 0)) :
+              error_relaxation(*law, stress, strain, k, *stiffness, point);
+        is_known |= is_uniform;
+        return relaxation;
+      }
+
+      const StressSpace<dim>              &stress_space;
+      const typename FlowLaws<dim>::AtTime now;
+      const double                         k;
+
+      // Of the cell:
+      const ViscoplasticLaw               *law       = nullptr;
+      const Stiffness                     *stiffness = nullptr;
+      std::optional<SymmetricTensor<4, 3>> growth;
+      /// What is left of an error that makes no stress, where it grows() with
+      /// the strain.
+      SymmetricTensor<4, 3> fading;
+      bool                  is_uniform = false;
+
+    private:
+      ErrorRelaxation relaxation;
+      bool            is_known = false;
+      std::size_t     cell     = 0;
+    };
+
+
+
     /// The defect of one step, sample by sample, and its norms.
     template <int dim>
     class DefectOfStep
@@ -118,18 +223,17 @@ namespace Viscoplastic
                    const TimeDefect          &defect,
                    const bool                 has_slope,
                    const double               onset,
-                   const double               rested,
                    const EvaluatedState<dim> &old,
                    const FlowRate            &accepted_rate,
                    EvaluatedState<dim>       &end)
         : stress_space(laws.stress_space)
-        , now(laws.at(end.state.t, old.state.history))
+        , decay(laws, old.state, end.state)
+        , now(decay.now)
         , defect(defect)
         , has_slope(has_slope)
         , onset(onset)
-        , rested(rested)
         , is_second(ErrorEstimator<dim>::has_sample_fields(scene)[2])
-        , relaxes(ErrorEstimator<dim>::has_sample_fields(scene)[3])
+        , carries(ErrorEstimator<dim>::has_sample_fields(scene)[3])
         , has_predictor(defect.second != 0.)
         , is_measured(scene.parameters.step_control.is_on() ||
                       scene.parameters.error_control.has_tolerance() ||
@@ -165,11 +269,7 @@ namespace Viscoplastic
         state.time_error = accepted.time_error;
         if (is_second)
           state.rate_slope.resize(accepted.rate_slope.size());
-        state.remembered_error = accepted.remembered_error;
-        // What comes to rest has made up for it by its slip.
-        if (rested > 0.)
-          for (SymmetricTensor<2, 3> &error : state.remembered_error)
-            error *= 1. - rested;
+        state.carried_error = accepted.carried_error;
         state.history_error = accepted.history_error;
         state.history_slope.resize(accepted.history_slope.size());
         std::size_t i = 0;
@@ -189,16 +289,7 @@ namespace Viscoplastic
         estimate.creep_path          = old.errors.creep_path + k * rate;
         estimate.creep_time =
           estimate.creep_path > 0. ? estimate.creep_path / rate : 0.;
-        estimate.remembered_share =
-          sums[of_remembered] > 0. ?
-            std::sqrt(sums[of_kept] / sums[of_remembered]) :
-            1.;
-        estimate.remembered_gain =
-          sums[of_remembered] > 0. ?
-            std::sqrt(sums[of_gain] / sums[of_remembered]) :
-            0.;
-        estimate.remembered_indicator =
-          relaxes ? std::sqrt(sums[of_left]) : estimate.time_indicator;
+        estimate.remembered_indicator = estimate.time_indicator;
       }
 
     private:
@@ -206,31 +297,12 @@ namespace Viscoplastic
       void
       enter(const std::size_t c)
       {
-        const ViscoplasticLaw *last_law       = law;
-        const Stiffness       *last_stiffness = stiffness;
-        law                                   = now.law(c);
-        stiffness                             = &stress_space.moduli(c);
-        // The same in all cells of most bodies.
-        if (c == 0 || law != last_law || stiffness != last_stiffness ||
-            (law && now.varies_in_space(c)))
-          {
-            growth =
-              law ? growth_with_strain(*law, k, *stiffness, now.point(c, 0)) :
-                    std::nullopt;
-            if (growth)
-              fading = invert(identity_tensor<3>() + *growth);
-            is_uniform =
-              law && law->has_constant_tangents() && !now.varies_in_space(c);
-            if (law == nullptr)
-              relaxation = {};
-            else if (is_uniform && (relaxes || fades))
-              relaxation =
-                error_relaxation(*law, {}, {}, k, *stiffness, now.point(c, 0));
-          }
+        decay.enter(c);
+        law       = decay.law;
+        stiffness = decay.stiffness;
         remembers = law && law->n_history_variables > 0;
         needs_stress =
-          law && ((fades && of_loads > 0.) ||
-                  ((relaxes || fades) && !is_uniform) || remembers);
+          law && ((fades && (of_loads > 0. || !decay.is_uniform)) || remembers);
         if (needs_stress)
           stress_space.strains(c, state.u.begin(), strains.data());
       }
@@ -251,7 +323,7 @@ namespace Viscoplastic
         if (!half_way.empty())
           all -= k / 3. *
                  (accepted_rate.rate[i] + end.rate->rate[i] - 2. * half_way[i]);
-        SymmetricTensor<2, 3> step = all;
+        SymmetricTensor<2, 3> step = all, local = all;
         CarriedError          carried;
         if (needs_stress)
           {
@@ -259,31 +331,33 @@ namespace Viscoplastic
             strain = now.mechanical(strains[s], c, s);
             point  = now.point(c, s);
           }
-        if (law && (relaxes || fades) && !is_uniform)
-          relaxation =
-            error_relaxation(*law, stress, strain, k, *stiffness, point);
         if (remembers)
           carried = carry_history(i);
-        if (fades)
+        if (fades && law)
           {
             // What the history has changed is no relaxation of stress, nor
             // what the loads have.
             const SymmetricTensor<2, 3> of_history =
               remembers ? change_by_history(i) : SymmetricTensor<2, 3>();
-            const double share = share_of_loads(change);
-            step =
-              share * all +
-              (1. - share) * (of_history + relaxation * (all - of_history));
+            const double           share = share_of_loads(change);
+            const ErrorRelaxation &relaxation =
+              decay.relaxation_at(stress, strain, point);
+            const SymmetricTensor<2, 3> driven =
+              share * all + (1. - share) * of_history;
+            step = driven + (1. - share) * (relaxation * (all - of_history));
+            if (carries)
+              local = driven + (1. - share) * (defect_of_decay(relaxation) *
+                                               (all - of_history));
           }
         if (onset > 0. && is_second)
           carried.z +=
             onset * accepted.k *
             (accepted.k * accepted.rate_slope[i] - accepted.k / k * change);
         state.time_error[i] += carried.z + step;
-        if (relaxes)
-          state.remembered_error[i] += carried.z;
-        if (growth)
-          state.time_error[i] = fading * state.time_error[i];
+        if (carries)
+          state.carried_error[i] += carried.z + local;
+        if (decay.growth)
+          state.time_error[i] = decay.fading * state.time_error[i];
         // Steps are chosen with the slope as the change of slope there.
         if (!has_slope)
           step += defect.second * k * change;
@@ -292,19 +366,6 @@ namespace Viscoplastic
           sums[norm] +=
             stress_space.weight(c, s) * stiffness->complementary_square(value);
         };
-        if (relaxes)
-          {
-            SymmetricTensor<2, 3>       &error = state.remembered_error[i];
-            const SymmetricTensor<2, 3> &moves = state.time_error[i];
-            const SymmetricTensor<2, 3>  left =
-              relaxation * (fades ? all : step);
-            add_square(of_left, left);
-            add_square(of_remembered, moves);
-            add_square(of_kept, relaxation * moves);
-            if (growth)
-              add_square(of_gain, relaxation * (*growth * moves));
-            error = relaxation * error + left;
-          }
         add_square(of_step, step);
         add_square(of_all_steps, state.time_error[i]);
         if (is_measured)
@@ -383,12 +444,13 @@ namespace Viscoplastic
       // What relaxes by itself does so in a time 1/r, however long the step.
       static constexpr double resolved = 0.1;
 
-      const StressSpace<dim>              &stress_space;
-      const typename FlowLaws<dim>::AtTime now;
-      const TimeDefect                     defect;
-      const bool                           has_slope;
-      const double                         onset, rested;
-      const bool                 is_second, relaxes, has_predictor, is_measured;
+      const StressSpace<dim>               &stress_space;
+      ErrorDecay<dim>                       decay;
+      const typename FlowLaws<dim>::AtTime &now;
+      const TimeDefect                      defect;
+      const bool                            has_slope;
+      const double                          onset;
+      const bool                 is_second, carries, has_predictor, is_measured;
       const EvaluatedState<dim> &old;
       const State<dim>          &accepted;
       const FlowRate            &accepted_rate;
@@ -399,12 +461,9 @@ namespace Viscoplastic
       IrreversibleStress         half_way, unflowed;
 
       // Of a cell:
-      const ViscoplasticLaw               *law       = nullptr;
-      const Stiffness                     *stiffness = nullptr;
-      std::optional<SymmetricTensor<4, 3>> growth;
-      SymmetricTensor<4, 3>                fading;
-      ErrorRelaxation                      relaxation;
-      bool is_uniform = false, remembers = false, needs_stress = false;
+      const ViscoplasticLaw *law       = nullptr;
+      const Stiffness       *stiffness = nullptr;
+      bool                   remembers = false, needs_stress = false;
       std::vector<SymmetricTensor<2, 3>> strains;
       // Of a sample:
       SymmetricTensor<2, 3> stress, strain;
@@ -417,11 +476,7 @@ namespace Viscoplastic
         of_all_steps,
         of_z,
         of_change,
-        of_left,
         of_rate,
-        of_remembered,
-        of_kept,
-        of_gain,
         n_norms
       };
       std::vector<double> sums = std::vector<double>(n_norms, 0.);
@@ -436,17 +491,85 @@ namespace Viscoplastic
                                   const TimeDefect          &defect,
                                   const bool                 has_slope,
                                   const double               onset,
-                                  const double               rested,
                                   const EvaluatedState<dim> &old,
                                   const FlowRate            &accepted_rate,
                                   EvaluatedState<dim>       &end) const
   {
     DefectOfStep<dim>(
-      scene, laws, defect, has_slope, onset, rested, old, accepted_rate, end)
+      scene, laws, defect, has_slope, onset, old, accepted_rate, end)
       .add();
   }
 
 
 
+  template <int dim>
+  void
+  relax_carried_error(const FlowLaws<dim> &laws,
+                      const State<dim>    &old,
+                      EvaluatedState<dim> &end)
+  {
+    State<dim>                        &state = end.state;
+    const StressSpace<dim>            &space = laws.stress_space;
+    ErrorDecay<dim>                    decay(laws, old, state);
+    std::vector<SymmetricTensor<2, 3>> strains(space.n_samples),
+      errors(space.n_samples);
+    // Of what the step adds, of D, of what is kept and regained of that.
+    std::vector<double> sums(4, 0.);
+    std::size_t         i = 0;
+    for (std::size_t c = 0; c < space.n_cells(); ++c)
+      {
+        decay.enter(c);
+        if (decay.law == nullptr)
+          {
+            i += space.n_samples;
+            continue;
+          }
+        space.strains(c, state.carried_error_of_u.begin(), errors.data());
+        if (!decay.is_uniform)
+          space.strains(c, state.u.begin(), strains.data());
+        for (unsigned int s = 0; s < space.n_samples; ++s, ++i)
+          {
+            const Stiffness       &stiffness = *decay.stiffness;
+            const ErrorRelaxation &relaxation =
+              decay.relaxation_at(stiffness.stress(strains[s]) + state.z[i],
+                                  decay.now.mechanical(strains[s], c, s),
+                                  decay.now.point(c, s));
+            const auto add_square = [&](const unsigned int           sum,
+                                        const SymmetricTensor<2, 3> &value) {
+              sums[sum] +=
+                space.weight(c, s) * stiffness.complementary_square(value);
+            };
+            SymmetricTensor<2, 3>       &error = state.carried_error[i];
+            const SymmetricTensor<2, 3> &moves = state.time_error[i];
+            add_square(0, relaxation * (error - old.carried_error[i]));
+            add_square(1, moves);
+            add_square(2, relaxation * moves);
+            if (decay.growth)
+              add_square(3, relaxation * (*decay.growth * moves));
+            // The stress of the error relaxes as if the strain stayed, and what
+            // strains then make up for fades as if the stress did.
+            const SymmetricTensor<2, 3> elastic = stiffness.stress(errors[s]),
+                                        stress = relaxation * (error + elastic);
+            error                              = stress - elastic;
+            if (decay.growth)
+              error = decay.fading * (error + *decay.growth * stress);
+          }
+      }
+    Utilities::MPI::sum(sums, space.space.communicator, sums);
+    ErrorEstimate &estimate = end.errors;
+    const auto     share    = [&](const double part) {
+      return std::sqrt(part / sums[1]);
+    };
+    if (laws.stress_space.space.scene.quantity->is_force())
+      {
+        estimate.remembered_indicator = std::sqrt(sums[0]);
+        estimate.remembered_share     = sums[1] > 0. ? share(sums[2]) : 1.;
+        estimate.remembered_gain      = sums[1] > 0. ? share(sums[3]) : 0.;
+      }
+  }
+
+
+
   VISCOPLASTIC_INSTANTIATE_MEMBER(ErrorEstimator, add_defect);
+  VISCOPLASTIC_INSTANTIATE(relax_carried_error);
 } // namespace Viscoplastic

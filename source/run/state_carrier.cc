@@ -190,6 +190,7 @@ namespace Viscoplastic
                                            &state.velocity,
                                            &state.initial_u,
                                            &state.friction_work,
+                                           &state.carried_error_of_u,
                                            &this->density})
       if (field->size() > 0)
         {

@@ -180,8 +180,7 @@ namespace Viscoplastic
       }
     TimerOutput::Scope         phase(timer, "estimate");
     std::optional<SlipDefects> slip_defects;
-    SlipChange                 slip_change;
-    double                     missed_work = 0.;
+    double                     begun = 0., missed_work = 0.;
     // Equal at both ends, they may be others in between.
     const Swing swing = swing_of_data(discretization, accepted, end);
     if (discretization.face && scene.has_bounds_of_step_before())
@@ -194,9 +193,9 @@ namespace Viscoplastic
                               step.time_step.t_old);
     if (discretization.slipping_face() != nullptr)
       {
-        slip_change = Viscoplastic::slip_change(discretization.face->layout(),
-                                                accepted.state.contact,
-                                                state.contact);
+        begun = slip_begun(discretization.face->layout(),
+                           accepted.state.contact,
+                           state.contact);
         if (accepted.state.k > 0. && accepted.is_solution &&
             accepted.has_slip_rate && !is_after_kink)
           slip_defects =
@@ -208,7 +207,7 @@ namespace Viscoplastic
                                           scene.parameters.time.scheme),
                             step.report,
                             slip_defects ? &*slip_defects : nullptr,
-                            slip_change,
+                            begun,
                             missed_work,
                             swing,
                             is_after_kink,
@@ -218,7 +217,6 @@ namespace Viscoplastic
     if (quantity_estimator)
       quantity_estimator->assess(solver_of_elasticity().bulk(),
                                  slip_defects ? &*slip_defects : nullptr,
-                                 slip_change,
                                  growth,
                                  accepted,
                                  end);
@@ -312,7 +310,7 @@ namespace Viscoplastic
       return;
     TimerOutput::Scope phase(timer, "estimate");
     quantity_estimator->assess(
-      solver_of_elasticity().bulk(), nullptr, {}, {}, initial, initial);
+      solver_of_elasticity().bulk(), nullptr, {}, initial, initial);
   }
 
 

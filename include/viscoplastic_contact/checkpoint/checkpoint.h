@@ -66,7 +66,7 @@ namespace Viscoplastic
   {
     std::vector<std::string> meshes, fields;
     /// Whether each of the nodal_fields() is contained.
-    std::array<bool, 4> has_nodal_field;
+    std::array<bool, 5> has_nodal_field;
     bool                has_estimate;
     /// Whether each of the sample_fields() is contained.
     std::array<bool, 7> has_sample_field;

@@ -103,10 +103,10 @@ namespace Viscoplastic
     RunState<dim>            &run;
 
     std::vector<std::string> meshes; // by rank of the checkpoint
-    std::array<bool, 4>      has_nodal_field;
+    std::array<bool, 5>      has_nodal_field;
     bool                     has_estimate       = false;
     bool                     has_bytes_to_spare = false;
     StepperMemory<dim>       memory;
-    std::array<bool, 4>      has_field_of_quantity{};
+    std::array<bool, 5>      has_field_of_quantity{};
   };
 } // namespace Viscoplastic

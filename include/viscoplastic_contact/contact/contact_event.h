@@ -54,19 +54,10 @@ namespace Viscoplastic
                const double                     k,
                const double                     old_k);
 
-  /// How much of the face a step has made slip or come to rest, by bounds.
-  struct SlipChange
-  {
-    /// Of what slips at its end, the part that has been at rest, or has slipped
-    /// the other way.
-    double begun = 0.;
-    /// Of what is held at its end, the part that has slipped, or been off.
-    double rested = 0.;
-  };
-
-  /// Collective.
-  SlipChange
-  slip_change(const ContactLayout &face,
-              const ContactState  &old_state,
-              const ContactState  &state);
+  /// Of what slips at the end of a step, the part that has been at rest before,
+  /// or has slipped the other way, by bounds. Collective.
+  double
+  slip_begun(const ContactLayout &face,
+             const ContactState  &old_state,
+             const ContactState  &state);
 } // namespace Viscoplastic

@@ -28,9 +28,11 @@ namespace Viscoplastic
     /// leading term of the time discretization error of z so far, and the slope
     /// of the rate that the second order needs (see ErrorEstimator).
     IrreversibleStress time_error, rate_slope;
-    /// If the quantity of interest is a force: the part of the time error of z
-    /// that has not relaxed yet.
-    IrreversibleStress remembered_error;
+    /// With a quantity of interest other than a sum: the time error of z as the
+    /// linearized equations carry it on from step to step, and that of u,
+    /// Cartesian with ghosts, empty before the first step.
+    IrreversibleStress carried_error;
+    DistributedVector  carried_error_of_u;
 
     /// The history variables alpha_n of the laws at the samples, their time
     /// error and the slope of their rates; empty unless a law has any.
@@ -59,7 +61,7 @@ namespace Viscoplastic
     return std::array<decltype(&state.z), 7>{{&state.z,
                                               &state.time_error,
                                               &state.rate_slope,
-                                              &state.remembered_error,
+                                              &state.carried_error,
                                               &state.history,
                                               &state.history_error,
                                               &state.history_slope}};
@@ -72,7 +74,10 @@ namespace Viscoplastic
   auto
   nodal_fields(StateType &state)
   {
-    return std::array<decltype(&state.u), 4>{
-      {&state.u, &state.velocity, &state.initial_u, &state.friction_work}};
+    return std::array<decltype(&state.u), 5>{{&state.u,
+                                              &state.velocity,
+                                              &state.initial_u,
+                                              &state.friction_work,
+                                              &state.carried_error_of_u}};
   }
 } // namespace Viscoplastic

@@ -119,6 +119,16 @@ namespace Viscoplastic
             const FaceTruncation    &truncation,
             const DistributedMatrix &matrix) const;
 
+    /// The problem whose dual this is, a(u, v) = load . v at a state: of errors
+    /// of z, those of u. @p u, in frames, brings where points stick that do.
+    /// Collective. Throws ExcMessage.
+    void
+    solve_linearized(BulkSolver              &solver,
+                     const ContactState      &contact,
+                     const CoulombLaw        *law,
+                     const DistributedVector &load,
+                     DistributedVector       &u) const;
+
     double
     sign() const
     {
@@ -158,11 +168,12 @@ namespace Viscoplastic
     DistributedVector
     prescribed() const;
 
-    /// What holds w at a state.
+    /// What holds w at a state; or u, if not @p transposed.
     FaceTruncation
     truncation(const BulkSolver   &solver,
                const ContactState &contact,
-               const CoulombLaw   *law) const;
+               const CoulombLaw   *law,
+               const bool          transposed) const;
 
     /// Set what follows from w, which @p load has loaded.
     void

@@ -71,9 +71,9 @@ namespace Viscoplastic
     /// If the quantity is a sum over the steps: the parts of both corrections
     /// that later steps can no longer change.
     double settled_space = 0., settled_time = 0.;
-    /// The settled parts of a force as they were when points came to rest;
-    /// since then stress has relaxed.
-    double rest_space = 0., rest_time = 0.;
+    /// The settled part of a force as it was when points came to rest; since
+    /// then stress has relaxed.
+    double rest_space = 0.;
     /// The sum of what the cells contribute to the error of the mesh, without
     /// signs.
     double unsigned_space = 0.;
@@ -98,8 +98,8 @@ namespace Viscoplastic
     {
       ErrorParts::exchange(archive);
       archive &value &space_correction &time_correction &settled_space
-        &settled_time &rest_space &rest_time &unsigned_space &space_at_least
-          &of_sides &of_boundary &turning &resting &dual_norm &dual_error;
+        &settled_time &rest_space &unsigned_space &space_at_least &of_sides
+          &of_boundary &turning &resting &dual_norm &dual_error;
     }
   };
 
@@ -125,7 +125,7 @@ namespace Viscoplastic
     double remembered_share = 1.;
     /// And what stress has regained of it, since the law holds the strain.
     double remembered_gain = 0.;
-    /// SlipChange::begun of the last step.
+    /// slip_begun() of the last step.
     double slip_begun = 0.;
     /// (sum_j (k_j/3) |du_j - du_{j-1}|^2)^{1/2}, the computable part of
     /// I^k(u')^{1/2}, (5.19); energy^{1/2} time^{-1/2}.

@@ -40,11 +40,11 @@ namespace Viscoplastic
   /// a(e_u, v) = -(e_z, eps(v)), the norm (int E^-1 D : D)^{1/2} bounds their
   /// effect on u. That errors of z relax, too, is left out: where the stress
   /// follows from the loads it does not happen. In linear laws that depend on
-  /// the strain, what makes no stress fades all the same. Forces feel only what
-  /// makes stress, and that relaxes with the law's own tangent in them. History
-  /// variables have such a sum of their own; what becomes of it in a step, and
-  /// what it does to G meanwhile, is the difference of two steps at the same
-  /// stress.
+  /// the strain, what makes no stress fades all the same. What quantities of
+  /// interest feel is carried on beside D, with the error of u that it makes
+  /// (QuantityEstimator::carry_time_error()). History variables have such a sum
+  /// of their own; what becomes of it in a step, and what it does to G
+  /// meanwhile, is the difference of two steps at the same stress.
   ///
   /// Friction: slip that turns in a step has the direction of its end. In an
   /// elastic body the error of what is linear between the steps satisfies
@@ -108,16 +108,16 @@ namespace Viscoplastic
     /// Set the estimate and the fields of time errors of the end of a step. Its
     /// forces and space estimate, and with viscosity the rates of both states,
     /// have been evaluated. @p defect: of the scheme of the step. @p
-    /// slip_defects: of the step, if any; @p missed_work: that of friction
-    /// bounds which it has missed (ContactFace::missed_bounds()); @p swing: the
-    /// swing_of_data() of the step. @p is_fresh: at its beginning data have a
-    /// kink, so that G may have one, too. Collective.
+    /// slip_defects, @p slip_begun: of the step, if any; @p missed_work: that
+    /// of friction bounds which it has missed (ContactFace::missed_bounds());
+    /// @p swing: the swing_of_data() of the step. @p is_fresh: at its beginning
+    /// data have a kink, so that G may have one, too. Collective.
     void
     assess(const FlowLaws<dim>       &laws,
            const TimeDefect          &defect,
            const ContactReport       &report,
            const SlipDefects         *slip_defects,
-           const SlipChange          &slip_change,
+           const double               slip_begun,
            const double               missed_work,
            const Swing               &swing,
            const bool                 is_fresh,
@@ -129,14 +129,12 @@ namespace Viscoplastic
     /// Add the defect of a step to the field of time errors, and put the norms
     /// into the estimate. @p has_slope: whether the slope of G before the step
     /// goes on in it. @p onset: how many times the bend of G after the step
-    /// before counts, in which slip has begun. @p rested: the part of the face
-    /// that comes to rest. Collective.
+    /// before counts, in which slip has begun. Collective.
     void
     add_defect(const FlowLaws<dim>       &laws,
                const TimeDefect          &defect,
                const bool                 has_slope,
                const double               onset,
-               const double               rested,
                const EvaluatedState<dim> &accepted,
                const FlowRate            &accepted_rate,
                EvaluatedState<dim>       &end) const;
@@ -145,4 +143,13 @@ namespace Viscoplastic
     const SolverParameters &solver;
     const double            algebraic_fraction;
   };
+
+
+  /// Let the carried error of z at the end of a step relax, with the carried
+  /// error of u that it makes. Collective.
+  template <int dim>
+  void
+  relax_carried_error(const FlowLaws<dim> &laws,
+                      const State<dim>    &old,
+                      EvaluatedState<dim> &end);
 } // namespace Viscoplastic

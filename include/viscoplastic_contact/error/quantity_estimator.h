@@ -41,8 +41,10 @@ namespace Viscoplastic
   ///   forces remember fade as it does.
   /// - the boundary: BoundaryDefects, which R does not know. What straight
   ///   sides miss has a sign, like the mesh.
-  /// - time steps: R_z(w) = -(D, eps(w)) with the sum D of the defects of all
-  ///   steps (see ErrorEstimator).
+  /// - time steps: R_z(w) = -(e_z, eps(w)) + sum_c f_c . e_c with the errors of
+  ///   z and of where points stick as carry_time_error() has them, and the
+  ///   forces f_c that hold w there. Of sums over steps -(D, eps(w)) with the
+  ///   sum D of the defects of all steps (see ErrorEstimator).
   /// - slip that turns or comes to rest within a step is wrong by defects d_c
   ///   (SlipDefects), and the quantity by sum_c f_c . d_c with the force f_c
   ///   that holds w at the point. Steps add up without signs, and so do points
@@ -65,13 +67,11 @@ namespace Viscoplastic
   /// holds w there. When they come to rest nothing jumps: with w of the points
   /// that stuck before, and w' of these and the new ones,
   ///
-  ///     sum_c f'_c . e_c = (R + R_z)(w) - (R + R_z)(w'),
+  ///     sum_c f'_c . e_c = R(w) - R(w'),
   ///
-  /// of the state that the step starts from, with all of D, since points go
-  /// where it moves them. That is settled, too, and ends with the bounds of
-  /// what sticks. Of a force what it remembers takes the place of D: slip makes
-  /// up for that, as far as what is held comes to rest. What is settled relaxes
-  /// as stress does, and regains what the law holds of strains that D has made.
+  /// of the state that the step starts from. That is settled, too, and ends
+  /// with the bounds of what sticks. Of a force what is settled relaxes as
+  /// stress does, and regains what the law holds of strains that D has made.
   template <int dim>
   class QuantityEstimator
   {
@@ -115,13 +115,12 @@ namespace Viscoplastic
 
     /// Add the quantity, its errors and the indicators to the state at the end
     /// of a step, whose estimate in the energy norm is complete. @p solver: for
-    /// the matrix of a(.,.). @p slip_defects, @p slip_change: of the step, if
-    /// any. @p growth: how the mesh part goes on from that of @p accepted, if
-    /// it is not estimated anew. Collective. Throws ExcMessage.
+    /// the matrix of a(.,.). @p slip_defects: of the step, if any. @p growth:
+    /// how the mesh part goes on from that of @p accepted, if it is not
+    /// estimated anew. Collective. Throws ExcMessage.
     void
     assess(BulkSolver                  &solver,
            const SlipDefects           *slip_defects,
-           const SlipChange            &slip_change,
            const std::optional<double> &growth,
            const EvaluatedState<dim>   &accepted,
            EvaluatedState<dim>         &end) const;
@@ -197,11 +196,33 @@ namespace Viscoplastic
                       const CoulombLaw *law,
                       Vector<double>   &sides) const;
 
+    /// Carry the errors of time steps on to the end of a step, whose defects
+    /// that of z has by now: they obey the equations linearized at its end,
+    ///
+    ///     e_z' = dG (E eps(e_u) + e_z, eps(e_u)),
+    ///     a(e_u, v) + (e_z, eps(v)) + sum_c e_lambda_c . v_c = 0,
+    ///
+    /// where points that stick keep their e_u, and bounds follow the pressure.
+    /// Collective. Throws ExcMessage.
+    void
+    carry_time_error(BulkSolver          &solver,
+                     const CoulombLaw    *law,
+                     const State<dim>    &old,
+                     EvaluatedState<dim> &end) const;
+
+    /// What the carried error does to the quantity. Collective.
+    double
+    time_error(const State<dim> &state) const;
+
     /// Settle what later steps will not change in the error of a sum.
     void
     settle(const EvaluatedState<dim> &accepted,
            const ContactState        &contact,
            QuantityEstimate          &estimate) const;
+
+    /// Whether friction holds a point.
+    bool
+    holds(const ContactState &contact, const unsigned int p) const;
 
     /// Settle the error with which points come to rest in a step, unless the
     /// quantity is a sum. Collective.
@@ -209,7 +230,6 @@ namespace Viscoplastic
     hold(BulkSolver                &solver,
          const EvaluatedState<dim> &accepted,
          const ContactState        &contact,
-         const double               rested,
          const CoulombLaw          *law,
          ErrorEstimate             &errors) const;
 

@@ -90,7 +90,7 @@ namespace Viscoplastic
 
     /// The old nodal_fields() and the multiplier density; absent ones are
     /// empty.
-    std::array<DistributedVector, 5> old_fields;
+    std::array<DistributedVector, 6> old_fields;
     /// The entry at AdmissibleSpace::axial of each of them that is there.
     std::vector<double> old_axial;
     parallel::distributed::SolutionTransfer<dim, DistributedVector>

@@ -178,6 +178,7 @@ namespace Viscoplastic
             enter(c);
             for (unsigned int s = 0; s < stress_space.n_samples; ++s, ++i)
               add_at(c, s, i);
+            add_norms(c);
           }
         Utilities::MPI::sum(sums, stress_space.space.communicator, sums);
         ErrorEstimate &estimate      = end.errors;
@@ -287,32 +288,42 @@ namespace Viscoplastic
         // Steps are chosen with the slope as the change of slope there.
         if (!has_slope)
           step += defect.second * k * change;
-        const auto add_square = [&](const Norm                   norm,
-                                    const SymmetricTensor<2, 3> &value) {
-          sums[norm] +=
-            stress_space.weight(c, s) * stiffness->complementary_square(value);
-        };
+        steps[s]   = step;
+        changes[s] = state.z[i] - accepted.z[i];
         if (relaxes)
           {
             SymmetricTensor<2, 3>       &error = state.remembered_error[i];
             const SymmetricTensor<2, 3> &moves = state.time_error[i];
-            const SymmetricTensor<2, 3>  left =
-              relaxation * (fades ? all : step);
-            add_square(of_left, left);
-            add_square(of_remembered, moves);
-            add_square(of_kept, relaxation * moves);
+            left[s] = relaxation * (fades ? all : step);
+            kept[s] = relaxation * moves;
             if (growth)
-              add_square(of_gain, relaxation * (*growth * moves));
-            error = relaxation * error + left;
+              gains[s] = relaxation * (*growth * moves);
+            error = relaxation * error + left[s];
           }
-        add_square(of_step, step);
-        add_square(of_all_steps, state.time_error[i]);
+      }
+
+      /// Those of a cell.
+      void
+      add_norms(const std::size_t c)
+      {
+        const auto add = [&](const Norm norm, const SymmetricTensor<2, 3> *of) {
+          sums[norm] += stress_space.complementary_product(c, of, of);
+        };
+        const std::size_t            first = c * stress_space.n_samples;
+        const SymmetricTensor<2, 3> *moves = &state.time_error[first];
+        add(of_step, steps.data());
+        add(of_all_steps, moves);
+        add(of_z, &state.z[first]);
+        add(of_change, changes.data());
         if (is_measured)
-          {
-            add_square(of_z, state.z[i]);
-            add_square(of_change, state.z[i] - accepted.z[i]);
-            add_square(of_rate, end.rate->rate[i]);
-          }
+          add(of_rate, &end.rate->rate[first]);
+        if (!relaxes)
+          return;
+        add(of_left, left.data());
+        add(of_remembered, moves);
+        add(of_kept, kept.data());
+        if (growth)
+          add(of_gain, gains.data());
       }
 
       /// What the step has left out of z or history at a sample, to leading
@@ -406,6 +417,8 @@ namespace Viscoplastic
       ErrorRelaxation                      relaxation;
       bool is_uniform = false, remembers = false, needs_stress = false;
       std::vector<SymmetricTensor<2, 3>> strains;
+      std::array<SymmetricTensor<2, 3>, GeometryInfo<dim>::vertices_per_cell>
+        steps, changes, left, kept, gains;
       // Of a sample:
       SymmetricTensor<2, 3> stress, strain;
       LawPoint              point;

@@ -31,8 +31,8 @@ namespace Viscoplastic
     const Stiffness        &stiffness    = stress_space.moduli(c);
     const ViscoplasticLaw  *law          = now.law(c);
     // At most 2^dim samples, without memory from the heap.
-    std::array<SymmetricTensor<2, 3>, GeometryInfo<dim>::vertices_per_cell>
-                 strain, old_strain;
+    using Samples =
+      std::array<SymmetricTensor<2, 3>, GeometryInfo<dim>::vertices_per_cell>;
     CellEnergies result;
     result.mean_strain = stress_space.mean_strain(c, state.u.begin());
     result.mean_stress = stiffness.stress(result.mean_strain);
@@ -43,30 +43,35 @@ namespace Viscoplastic
     const bool flows = law || laws.source_solution;
     const bool is_heated =
       laws.thermal && laws.thermal->expands && laws.thermal->varies_in_time;
-    if ((flows || is_heated) && !without_strain)
+    const SymmetricTensor<2, 3> *of_cell = &state.z[c * n];
+    result.irreversible_energy =
+      0.5 * stress_space.complementary_product(c, of_cell, of_cell);
+    if (!flows && !is_heated)
+      return result;
+    const SymmetricTensor<2, 3> *old_of_cell = &old_state.z[c * n];
+    Samples                      strain, old_strain;
+    if (without_strain)
       {
-        stress_space.strains(c, state.u.begin(), strain.data());
-        stress_space.strains(c, old_state.u.begin(), old_strain.data());
+        Samples change, sum;
+        for (unsigned int s = 0; s < n; ++s)
+          {
+            change[s] = of_cell[s] - old_of_cell[s];
+            sum[s]    = old_of_cell[s] + of_cell[s];
+          }
+        result.viscous_dissipation =
+          -0.5 *
+          stress_space.complementary_product(c, change.data(), sum.data());
+        return result;
       }
+    stress_space.strains(c, state.u.begin(), strain.data());
+    stress_space.strains(c, old_state.u.begin(), old_strain.data());
     for (unsigned int s = 0; s < n; ++s)
       {
-        const SymmetricTensor<2, 3> &z      = state.z[c * n + s];
+        const SymmetricTensor<2, 3> &z = of_cell[s], &old_z = old_of_cell[s];
         const double                 weight = stress_space.weight(c, s);
-        result.irreversible_energy +=
-          0.5 * weight * stiffness.complementary_square(z);
-        if (!flows && !is_heated)
-          continue;
-        const SymmetricTensor<2, 3> &old_z = old_state.z[c * n + s];
-        if (without_strain)
-          {
-            result.viscous_dissipation -=
-              0.5 * weight *
-              stiffness.complementary_product(z - old_z, old_z + z);
-            continue;
-          }
-        const double growth =
+        const double                 growth =
           is_heated ? now.thermal_strain(c, s) - before.thermal_strain(c, s) :
-                      0.;
+                                      0.;
         if (growth != 0.)
           result.thermal_work -=
             0.5 * weight * growth *

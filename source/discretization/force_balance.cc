@@ -2,8 +2,7 @@
 #include <viscoplastic_contact/base/number_range.h>
 #include <viscoplastic_contact/discretization/force_balance.h>
 
-#include <Epetra_Vector.h>
-
+#include <algorithm>
 #include <limits>
 
 namespace Viscoplastic
@@ -52,7 +51,8 @@ namespace Viscoplastic
   evaluate_forces(const StressSpace<dim>  &stress_space,
                   const DistributedMatrix &matrix,
                   Load<dim>                load,
-                  const State<dim>        &state)
+                  const State<dim>        &state,
+                  DistributedVector        irreversible)
   {
     const AdmissibleSpace<dim> &space = stress_space.space;
     Forces<dim>                 forces;
@@ -63,7 +63,9 @@ namespace Viscoplastic
     forces.strain_energy = 0.5 * (forces.u * forces.internal);
     if (space.scene.has_irreversible_stress()) // collective
       {
-        forces.irreversible      = irreversible_forces(stress_space, state.z);
+        forces.irreversible      = irreversible.size() > 0 ?
+                                     std::move(irreversible) :
+                                     irreversible_forces(stress_space, state.z);
         forces.irreversible_work = forces.u * forces.irreversible;
         forces.internal += forces.irreversible;
       }
@@ -78,15 +80,18 @@ namespace Viscoplastic
                   const DistributedMatrix    &matrix,
                   const Forces<dim>          &forces)
   {
-    const auto          square = [](const double x) { return x * x; };
-    const bool          has_z  = forces.irreversible.size() > 0;
-    std::vector<double> sums(2, 0.);
-    // At once: to look for one entry is slow.
-    Epetra_Vector diagonal(matrix.trilinos_matrix().RowMap());
-    matrix.trilinos_matrix().ExtractDiagonalCopy(diagonal);
+    const auto              square = [](const double x) { return x * x; };
+    const bool              has_z  = forces.irreversible.size() > 0;
+    std::vector<double>     sums(2, 0.);
+    const Epetra_CrsMatrix &crs = matrix.trilinos_matrix();
     for (std::size_t i = 0; i < space.owned.n_elements(); ++i)
       {
-        const double stiffness = diagonal[i];
+        int     length, *indices;
+        double *values;
+        crs.ExtractMyRowView(i, length, values, indices);
+        const int column = crs.LCID(crs.GRID(i));
+        const int at = std::find(indices, indices + length, column) - indices;
+        const double stiffness = at < length ? values[at] : 0.;
         if (!(stiffness > 0.))
           continue;
         const double z = has_z ? forces.irreversible.begin()[i] : 0.;

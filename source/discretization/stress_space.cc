@@ -3,7 +3,6 @@
 #include <deal.II/fe/fe_dgq.h>
 
 #include <viscoplastic_contact/discretization/stress_space.h>
-#include <viscoplastic_contact/laws/strain.h>
 
 namespace Viscoplastic
 {
@@ -117,29 +116,22 @@ namespace Viscoplastic
                   hoops.push_back(mean_hoop / volume);
               }
           }
+        for (const unsigned int v : cell->vertex_indices())
+          {
+            Tensor<1, dim> gradient;
+            double         hoop = 0.;
+            for (unsigned int q = 0; q < n_samples; ++q)
+              {
+                const std::size_t i = (shape * n_samples + q) * n_vertices + v;
+                const double part   = weights[shape * n_samples + q] / volume;
+                gradient += part * gradients[i];
+                if (has_hoops)
+                  hoop += part * hoops[i];
+              }
+            mean_gradients.push_back(gradient);
+            mean_hoops.push_back(hoop);
+          }
       }
-  }
-
-
-
-  template <int dim>
-  SymmetricTensor<2, 3>
-  StressSpace<dim>::strain_at(const std::size_t     cell,
-                              const double         *u,
-                              const Tensor<1, dim> *gradient,
-                              const double         *hoop) const
-  {
-    const unsigned int *node = nodes_of_cell(cell);
-    Tensor<2, dim>      sum;
-    double              zz = space.axial_strain(u);
-    for (unsigned int v = 0; v < n_vertices; ++v)
-      for (unsigned int i = 0; i < dim; ++i)
-        for (unsigned int j = 0; j < dim; ++j)
-          sum[i][j] += u[node[v] + i] * gradient[v][j];
-    if (hoop != nullptr)
-      for (unsigned int v = 0; v < n_vertices; ++v)
-        zz += u[node[v]] * hoop[v];
-    return strain(sum, zz);
   }
 
 
@@ -149,23 +141,11 @@ namespace Viscoplastic
   StressSpace<dim>::mean_strain(const std::size_t cell, const double *u) const
   {
     // Mean dilatation does not change it.
-    std::array<Tensor<1, dim>, n_vertices> gradient;
-    std::array<double, n_vertices>         hoop{};
-    for (unsigned int s = 0; s < n_samples; ++s)
-      {
-        const std::size_t first = (shapes[cell] * n_samples + s) * n_vertices;
-        const double      part  = weight(cell, s) / volume(cell);
-        for (unsigned int v = 0; v < n_vertices; ++v)
-          {
-            gradient[v] += part * gradients[first + v];
-            if (!hoops.empty())
-              hoop[v] += part * hoops[first + v];
-          }
-      }
-    return strain_at(cell,
-                     u,
-                     gradient.data(),
-                     hoops.empty() ? nullptr : hoop.data());
+    const std::size_t first = shapes[cell] * n_vertices;
+    return strain_at(displacements(cell, u),
+                     &mean_gradients[first],
+                     hoops.empty() ? nullptr : &mean_hoops[first],
+                     space.axial_strain(u));
   }
 
 
@@ -176,14 +156,16 @@ namespace Viscoplastic
                             const double          *u,
                             SymmetricTensor<2, 3> *strain) const
   {
-    double mean = 0.;
+    const NodalValues values = displacements(cell, u);
+    const double      zz     = space.axial_strain(u);
+    double            mean   = 0.;
     for (unsigned int s = 0; s < n_samples; ++s)
       {
         const std::size_t first = (shapes[cell] * n_samples + s) * n_vertices;
-        strain[s]               = strain_at(cell,
-                              u,
+        strain[s]               = strain_at(values,
                               &gradients[first],
-                              hoops.empty() ? nullptr : &hoops[first]);
+                              hoops.empty() ? nullptr : &hoops[first],
+                              zz);
         mean += trace(strain[s]) * weight(cell, s);
       }
     if (mean_dilatation && n_samples > 1)
@@ -259,65 +241,73 @@ namespace Viscoplastic
   {
     constexpr unsigned int n             = n_vertices * dim;
     const bool             mean_pressure = mean_dilatation && n_samples > 1;
-    std::array<double, n>  mean{}; // divergence of each shape function
-    const Tensor<1, dim> *g = &gradients[shapes[cell] * n_samples * n_vertices];
-    const double         *h =
-      hoops.empty() ? nullptr : &hoops[shapes[cell] * n_samples * n_vertices];
-    const auto hoop = [&h](const unsigned int v, const unsigned int component) {
-      return h != nullptr && component == 0 ? h[v] : 0.;
-    };
-    if (mean_pressure)
-      for (unsigned int s = 0; s < n_samples; ++s)
-        for (unsigned int i = 0; i < n; ++i)
-          mean[i] += (g[s * n_vertices + i / dim][i % dim] +
-                      hoop(s * n_vertices + i / dim, i % dim)) *
-                     weight(cell, s) / volume(cell);
-
-    // Also of the axial unknown.
-    const unsigned int                       n_all = n + (space.axial ? 1 : 0);
-    std::array<SymmetricTensor<2, 3>, n + 1> strain;
-    strain[n][2][2] = 1. / space.axial_length;
-    std::array<double, n> excess{}; // of the mean divergence, a third of it
-    for (unsigned int s = 0; s < n_samples; ++s, g += n_vertices)
+    const unsigned int     n_all         = n + (space.axial ? 1 : 0);
+    // Components of tensors as SymmetricTensor<2, 3> stores them; strains in a
+    // plane have the first ones.
+    constexpr unsigned int n_components    = dim == 2 ? 4 : 6;
+    constexpr unsigned int component[3][3] = {{0, 3, 4}, {3, 1, 5}, {4, 5, 2}};
+    // Of the upper triangle.
+    std::array<std::array<double, n + 1>, n + 1> sums{};
+    for (unsigned int s = 0; s < n_samples; ++s)
       {
-        for (unsigned int i = 0; i < n; ++i)
-          {
-            const unsigned int c = i % dim;
-            strain[i]            = 0.;
-            if (mean_pressure)
-              excess[i] = (mean[i] - g[i / dim][c] - hoop(i / dim, c)) / 3.;
-            for (unsigned int d = 0; d < dim; ++d)
-              strain[i][c][d] = (c == d ? 1. : 0.5) * g[i / dim][d];
-            if (h != nullptr)
-              strain[i][2][2] = hoop(i / dim, c);
-            if (mean_pressure)
-              strain[i] = with_dilatation(strain[i], mean[i]);
-          }
+        const std::size_t first = (shapes[cell] * n_samples + s) * n_vertices;
+        const Tensor<1, dim> *g = &gradients[first];
+        const double         *h = hoops.empty() ? nullptr : &hoops[first];
+        const double         *C = tangent[s].begin_raw(), w = weight(cell, s);
+        const auto            hoop = [&h](const unsigned int i) {
+          return h != nullptr && i % dim == 0 ? h[i / dim] : 0.;
+        };
+        // A third of what the mean divergence of each shape function is more
+        // than the divergence.
+        std::array<double, n> excess{};
+        if (mean_pressure)
+          for (unsigned int i = 0; i < n; ++i)
+            {
+              const std::size_t v = shapes[cell] * n_vertices + i / dim;
+              excess[i] =
+                (mean_gradients[v][i % dim] - g[i / dim][i % dim] - hoop(i)) /
+                3.;
+              if (h != nullptr && i % dim == 0)
+                excess[i] += mean_hoops[v] / 3.;
+            }
         for (unsigned int j = 0; j < n_all; ++j)
           {
-            const SymmetricTensor<2, 3> stress =
-              tangent[s] * strain[j] * weight(cell, s);
-            const double pressure = trace(stress);
-            double       acting[dim][dim];
-            for (unsigned int c = 0; c < dim; ++c)
-              for (unsigned int d = 0; d < dim; ++d)
-                acting[c][d] = stress[c][d];
-            // The work on strain[i], of which most is zero.
-            for (unsigned int i = 0; i < j; ++i)
+            // C eps of shape function j, and its work on the others, of whose
+            // strains most is zero.
+            std::array<double, 6> stress{};
+            for (unsigned int i = 0; i < n_components; ++i)
               {
-                double entry = pressure * excess[i];
-                for (unsigned int d = 0; d < dim; ++d)
-                  entry += acting[i % dim][d] * g[i / dim][d];
-                if (h != nullptr)
-                  entry += stress[2][2] * hoop(i / dim, i % dim);
-                cell_matrix(i, j) += entry;
-                cell_matrix(j, i) += entry;
+                const double *of = &C[6 * i];
+                if (j == n)
+                  stress[i] = of[2] / space.axial_length;
+                else
+                  {
+                    for (unsigned int d = 0; d < dim; ++d)
+                      stress[i] += of[component[j % dim][d]] * g[j / dim][d];
+                    stress[i] +=
+                      (of[0] + of[1] + of[2]) * excess[j] + of[2] * hoop(j);
+                  }
+                stress[i] *= w;
               }
-            cell_matrix(j, j) += strain[j] * stress;
+            const double pressure = stress[0] + stress[1] + stress[2];
+            for (unsigned int i = 0; i <= j && i < n; ++i)
+              {
+                double work = pressure * excess[i] + stress[2] * hoop(i);
+                for (unsigned int d = 0; d < dim; ++d)
+                  work += stress[component[i % dim][d]] * g[i / dim][d];
+                sums[j][i] += work;
+              }
+            if (j == n)
+              sums[n][n] += stress[2] / space.axial_length;
           }
-        if (h != nullptr)
-          h += n_vertices;
       }
+    for (unsigned int j = 0; j < n_all; ++j)
+      for (unsigned int i = 0; i <= j; ++i)
+        {
+          cell_matrix(i, j) += sums[j][i];
+          if (i < j)
+            cell_matrix(j, i) += sums[j][i];
+        }
   }
 
 

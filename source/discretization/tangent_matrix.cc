@@ -104,21 +104,23 @@ namespace Viscoplastic
             stress_space.strains(c, ghosted_u.begin(), strain.data());
           for (unsigned int s = 0; s < n; ++s)
             {
-              const std::size_t i = c * n + s;
-              const StepTangent next =
+              const std::size_t           i = c * n + s;
+              const SymmetricTensor<4, 3> next =
                 law ? step_tangent(*law,
                                    stiffness.stress(strain[s]) + z[i],
                                    now.mechanical(strain[s], c, s),
                                    k,
                                    stiffness,
-                                   now.point(c, s)) :
-                      StepTangent{E, E_inverse};
-              is_same     = is_same && next.tangent == tangents[i];
-              tangents[i] = next.tangent;
+                                   now.point(c, s),
+                                   has_norms ? &compliances[i] : nullptr) :
+                      E;
+              is_same     = is_same && next == tangents[i];
+              tangents[i] = next;
               largest_nu  = std::max(largest_nu, poissons_ratio(tangents[i]));
               if (!has_norms)
                 continue;
-              compliances[i] = next.compliance;
+              if (!law)
+                compliances[i] = E_inverse;
               // The largest eigenvalue of C^-1 E: with a potential, all others
               // are at least 1.
               largest = std::max(largest, trace(compliances[i], E) - 5.);
@@ -166,7 +168,7 @@ namespace Viscoplastic
         for (unsigned int s = 0; s < n; ++s)
           {
             change[s] = tangents[c * n + s] - E;
-            flows |= change[s].norm() > 0.;
+            flows |= tangents[c * n + s] != E;
           }
         if (!flows)
           continue;

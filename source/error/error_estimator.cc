@@ -151,16 +151,13 @@ namespace Viscoplastic
     ErrorEstimate              &estimate = end.errors;
     estimate.initial                     = before.initial;
     estimate.transfer                    = before.transfer;
-    estimate.history =
-      before.history + end.state.k * end.space_estimate.rate_defect;
-    estimate.history_adds = !scene.keeps_history_at_points();
+    estimate.history_adds                = !scene.keeps_history_at_points();
     estimate.friction =
       std::sqrt(Utilities::fixed_power<2>(before.friction) +
                 Utilities::fixed_power<2>(friction_calibration) *
                   (slip_defects != nullptr ? slip_defects->work : 0.) +
                 2. * missed_work);
     estimate.energy_norm = energy_norm(forces);
-    estimate.space       = end.space_estimate.total;
     estimate.algebraic   = report.error;
 
     estimate.creep_path = before.creep_path;
@@ -193,21 +190,43 @@ namespace Viscoplastic
 
     // With d = u_n - u_{n-1} and v = du_{n-1}, from a(u, .) of both states:
     // |d/k - v|^2 = a(d, d)/k^2 - 2 a(d, v)/k + a(v, v).
-    const double      k = end.state.k;
-    DistributedVector change(forces.u), velocity(forces.u),
-      elastic(forces.elastic());
-    change -= accepted.forces.u;
-    elastic -= accepted.forces.elastic();
+    const double      k        = end.state.k;
+    DistributedVector velocity = space.owned_vector();
     space.to_frames(accepted.state.velocity, velocity);
-    estimate.velocity_square = (elastic * change) / (k * k);
-    const double jump        = estimate.velocity_square -
-                        2. / k * (elastic * velocity) + before.velocity_square;
+    std::vector<double> products(2, 0.); // a(d, d), a(d, v)
+    for (unsigned int i = 0; i < velocity.locally_owned_size(); ++i)
+      {
+        const auto elastic = [i](const Forces<dim> &of) {
+          return of.internal.begin()[i] -
+                 (of.irreversible.size() > 0 ? of.irreversible.begin()[i] : 0.);
+        };
+        const double change = elastic(forces) - elastic(accepted.forces);
+        products[0] +=
+          change * (forces.u.begin()[i] - accepted.forces.u.begin()[i]);
+        products[1] += change * velocity.begin()[i];
+      }
+    Utilities::MPI::sum(products, space.communicator, products);
+    estimate.velocity_square = products[0] / (k * k);
+    const double jump =
+      estimate.velocity_square - 2. / k * products[1] + before.velocity_square;
     // Below this it is rounding.
     const bool is_jump =
       jump > 1e-12 * (estimate.velocity_square + before.velocity_square);
     estimate.velocity_variation =
       std::sqrt(Utilities::fixed_power<2>(before.velocity_variation) +
                 (is_jump ? k / 3. * jump : 0.));
+  }
+
+
+
+  template <int dim>
+  void
+  ErrorEstimator<dim>::assess_space(const ErrorEstimate &before,
+                                    EvaluatedState<dim> &end) const
+  {
+    end.errors.history =
+      before.history + end.state.k * end.space_estimate.rate_defect;
+    end.errors.space = end.space_estimate.total;
   }
 
 

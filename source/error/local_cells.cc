@@ -150,11 +150,14 @@ namespace Viscoplastic
   {
     const Shape                                &shape = shapes[cell.shape];
     std::array<SymmetricTensor<2, 3>, n_points> result;
+    double                                      mean = 0.;
     for (unsigned int q = 0; q < n_points; ++q)
-      result[q] = strain(gradient(displacements, shape.gradients[q]),
-                         strain_zz(displacements, shape.hoops[q]));
-    const bool   dilates = stress_space.mean_dilatation;
-    const double mean = dilates ? trace(mean_strain(cell, displacements)) : 0.;
+      {
+        result[q] = strain(gradient(displacements, shape.gradients[q]),
+                           strain_zz(displacements, shape.hoops[q]));
+        mean += trace(result[q]) * shape.weights[q] / shape.volume;
+      }
+    const bool dilates = stress_space.mean_dilatation;
     for (unsigned int q = 0; q < n_points; ++q)
       {
         if (dilatations != nullptr)

@@ -83,7 +83,6 @@ namespace Viscoplastic
                                             Vector<double>   &sides) const
   {
     const StressSpace<dim> &stress_space = discretization.stress_space;
-    const unsigned int      n            = stress_space.n_samples;
     // After a thousand relaxation times the body is as good as incompressible.
     // To half a power of two, so that linear laws have few matrices.
     const double longest = 1e3 / rate.relaxation_rate,
@@ -124,35 +123,31 @@ namespace Viscoplastic
           dual_of_creep);
     const DualSolution<dim> &dual = dual_of_creep.solution;
     typename RecoveryEstimator<dim>::Linearization linearization{k / time, {}};
-    std::vector<SymmetricTensor<2, 3>>             strains(n);
-    std::size_t strained_cell = numbers::invalid_size_type; // whose strains
     if (!tangent->is_constant)
       linearization.remainder = [&](const std::size_t            c,
                                     const unsigned int           s,
+                                    const SymmetricTensor<2, 3> &strain,
                                     const SymmetricTensor<2, 3> &e) {
         const ViscoplasticLaw *flow = now.law(c);
         if (flow == nullptr)
           return SymmetricTensor<2, 3>();
-        if (c != strained_cell)
-          stress_space.strains(c, state.u.begin(), strains.data());
-        strained_cell                         = c;
+        const std::size_t           i         = c * stress_space.n_samples + s;
         const Stiffness            &stiffness = stress_space.moduli(c);
-        const SymmetricTensor<2, 3> stress    = stiffness.stress(strains[s]) +
-                                             state.z[c * n + s],
-                                    change =
-                                      tangent->at_samples()[c * n + s] * e,
-                                    strain = now.mechanical(strains[s], c, s);
+        const SymmetricTensor<2, 3> stress =
+                                      stiffness.stress(strain) + state.z[i],
+                                    change = tangent->at_samples()[i] * e,
+                                    of_law = now.mechanical(strain, c, s);
         const LawPoint point               = now.point(c, s);
         // C e = E e + k dG to first order.
         return change - stiffness.stress(e) -
                k * (flow->step_rate(
-                      stress + change, strain + e, k, stiffness, point) -
-                    flow->step_rate(stress, strain, k, stiffness, point));
+                      stress + change, of_law + e, k, stiffness, point) -
+                    flow->step_rate(stress, of_law, k, stiffness, point));
       };
     Vector<double> products =
       space_estimator.multiply_recovered(state,
                                          dual,
-                                         tangent->at_samples(),
+                                         &tangent->at_samples(),
                                          linearization,
                                          dual_of_creep.recovered);
     sides = boundary_defects.missing_sides(state, dual.cartesian);

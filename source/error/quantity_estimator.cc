@@ -5,24 +5,6 @@
 
 namespace Viscoplastic
 {
-  namespace
-  {
-    /// E at the samples.
-    template <int dim>
-    std::vector<SymmetricTensor<4, 3>>
-    elastic_tangents(const StressSpace<dim> &stress_space)
-    {
-      std::vector<SymmetricTensor<4, 3>> moduli;
-      for (std::size_t c = 0; c < stress_space.n_cells(); ++c)
-        moduli.insert(moduli.end(),
-                      stress_space.n_samples,
-                      stress_space.moduli(c).tensor());
-      return moduli;
-    }
-  } // namespace
-
-
-
   template <int dim>
   QuantityEstimator<dim>::QuantityEstimator(
     const Discretization<dim> &discretization,
@@ -178,13 +160,8 @@ namespace Viscoplastic
               indicators =
                 products_of_creep(state, *end.rate, creep, law, sides);
             else
-              indicators =
-                space_estimator.multiply_recovered(state,
-                                                   dual,
-                                                   elastic_tangents(
-                                                     d.stress_space),
-                                                   {1., {}},
-                                                   dual_of_step.recovered);
+              indicators = space_estimator.multiply_recovered(
+                state, dual, nullptr, {1., {}}, dual_of_step.recovered);
             dual_problem.add_at_meetings(state, indicators);
             sums = sum_over_cells(indicators, triangulation);
             if (creeps)

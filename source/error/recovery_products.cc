@@ -10,7 +10,7 @@ namespace Viscoplastic
   RecoveryEstimator<dim>::renew(
     const Part                               &part,
     const DistributedVector                  &w,
-    const std::vector<SymmetricTensor<4, 3>> &tangents,
+    const std::vector<SymmetricTensor<4, 3>> *tangents,
     OfDual                                   &dual) const
   {
     const unsigned int n_samples = local.stress_space.n_samples;
@@ -21,18 +21,23 @@ namespace Viscoplastic
         const auto                   e   = defects(c, eps);
         for (unsigned int q = 0; q < n_points; ++q)
           {
-            const std::size_t            i = c * n_points + q;
-            const SymmetricTensor<4, 3> &C =
-              tangents[c * n_samples + (n_samples == 1 ? 0 : q)];
-            dual.stress[i] = C * e[q];
+            const std::size_t i         = c * n_points + q;
+            const Stiffness  &stiffness = local.cells[c].stiffness;
+            const auto        C = [&](const SymmetricTensor<2, 3> &strain) {
+              return tangents == nullptr ?
+                              stiffness.stress(strain) :
+                              (*tangents)[c * n_samples + (n_samples == 1 ? 0 : q)] *
+                         strain;
+            };
+            dual.stress[i] = C(e[q]);
             if (!dual.dilatation.empty())
               {
                 dual.dilatation[i] = dilatation[q] / 3.;
                 dual.of_dilatation[i] =
-                  dual.dilatation[i] * (C * unit_symmetric_tensor<3>());
+                  dual.dilatation[i] * C(unit_symmetric_tensor<3>());
               }
             if (!dual.strain.empty())
-              dual.strain[i] = local.cells[c].stiffness.strain(C * eps[q]);
+              dual.strain[i] = stiffness.strain(C(eps[q]));
           }
       }
   }
@@ -45,7 +50,7 @@ namespace Viscoplastic
     const DistributedVector                  &u,
     const IrreversibleStress                 &z,
     const DistributedVector                  &w,
-    const std::vector<SymmetricTensor<4, 3>> &tangents,
+    const std::vector<SymmetricTensor<4, 3>> *tangents,
     const Linearization                      &law,
     OfDual                                   &dual) const
   {
@@ -112,7 +117,8 @@ namespace Viscoplastic
           {
             const auto &weights = local.shapes[local.cells[c].shape].weights;
             std::array<double, n_points> dilatation;
-            auto e = defects(c, strains(c, u, dilatation.data()));
+            const auto                   eps = strains(c, u, dilatation.data());
+            auto                         e   = defects(c, eps);
             for (unsigned int q = 0; q < n_points; ++q)
               {
                 const unsigned int s = n_samples == 1 ? 0 : q;
@@ -132,7 +138,10 @@ namespace Viscoplastic
                                  dual.dilatation[i] / law.share;
                   }
                 if (law.remainder)
-                  product -= law.remainder(c, s, -1. * of_step) *
+                  product -= law.remainder(c,
+                                           s,
+                                           n_samples == 1 ? means[c] : eps[q],
+                                           -1. * of_step) *
                              dual.strain[i] / law.share;
                 products[c] += weights[q] * product;
               }

@@ -389,11 +389,12 @@ namespace Viscoplastic
       const Stiffness &stiffness = cells[r.cell].stiffness;
       double           square    = 0.;
       for (unsigned int q = 0; q < n_face_points; ++q)
-        square +=
-          r.face.weights[q] *
-          (r.values[q] * complied(stiffness, r.face.normals[q], r.values[q]) +
-           2. * r.values[n_face_points + q].norm_square() /
-             stiffness.smallest_deviatoric_eigenvalue());
+        square += r.face.weights[q] * r.values[q] *
+                  complied(stiffness, r.face.normals[q], r.values[q]);
+      for (unsigned int q = 0; r.is_at_boundary && q < n_face_points; ++q)
+        square += r.face.weights[q] * 2. *
+                  r.values[n_face_points + q].norm_square() /
+                  stiffness.smallest_deviatoric_eigenvalue();
       eta[r.cell] += factor(r) * square;
     });
     return local.by_active_index(eta);

@@ -102,12 +102,13 @@ namespace Viscoplastic
           stress_space.strains(c, state.u.begin(), strains.data());
           for (unsigned int s = 0; s < n; ++s)
             {
-              SymmetricTensor<2, 3> stress = stiffness.stress(strains[s]);
+              strains[s] = stiffness.stress(strains[s]);
               if (!state.z.empty())
-                stress += state.z[c * n + s];
-              square += stress_space.weight(c, s) *
-                        stiffness.complementary_square(stress);
+                strains[s] += state.z[c * n + s];
             }
+          square += stress_space.complementary_product(c,
+                                                       strains.data(),
+                                                       strains.data());
         }
       return std::sqrt(
         Utilities::MPI::sum(square, stress_space.space.communicator));

@@ -278,6 +278,7 @@ namespace Viscoplastic
             enter(c);
             for (unsigned int s = 0; s < stress_space.n_samples; ++s, ++i)
               add_at(c, s, i);
+            add_norms(c);
           }
         Utilities::MPI::sum(sums, stress_space.space.communicator, sums);
         ErrorEstimate &estimate      = end.errors;
@@ -361,19 +362,24 @@ namespace Viscoplastic
         // Steps are chosen with the slope as the change of slope there.
         if (!has_slope)
           step += defect.second * k * change;
-        const auto add_square = [&](const Norm                   norm,
-                                    const SymmetricTensor<2, 3> &value) {
-          sums[norm] +=
-            stress_space.weight(c, s) * stiffness->complementary_square(value);
+        steps[s]   = step;
+        changes[s] = state.z[i] - accepted.z[i];
+      }
+
+      /// Those of a cell.
+      void
+      add_norms(const std::size_t c)
+      {
+        const auto add = [&](const Norm norm, const SymmetricTensor<2, 3> *of) {
+          sums[norm] += stress_space.complementary_product(c, of, of);
         };
-        add_square(of_step, step);
-        add_square(of_all_steps, state.time_error[i]);
+        const std::size_t first = c * stress_space.n_samples;
+        add(of_step, steps.data());
+        add(of_all_steps, &state.time_error[first]);
+        add(of_z, &state.z[first]);
+        add(of_change, changes.data());
         if (is_measured)
-          {
-            add_square(of_z, state.z[i]);
-            add_square(of_change, state.z[i] - accepted.z[i]);
-            add_square(of_rate, end.rate->rate[i]);
-          }
+          add(of_rate, &end.rate->rate[first]);
       }
 
       /// What the step has left out of z or history at a sample, to leading
@@ -465,6 +471,8 @@ namespace Viscoplastic
       const Stiffness       *stiffness = nullptr;
       bool                   remembers = false, needs_stress = false;
       std::vector<SymmetricTensor<2, 3>> strains;
+      std::array<SymmetricTensor<2, 3>, GeometryInfo<dim>::vertices_per_cell>
+        steps, changes;
       // Of a sample:
       SymmetricTensor<2, 3> stress, strain;
       LawPoint              point;

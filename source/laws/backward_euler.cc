@@ -61,12 +61,16 @@ namespace Viscoplastic
                        const SymmetricTensor<2, 3> &s)
     {
       SymmetricTensor<4, 3> result;
+      double               *C          = result.begin_raw();
+      const double         *components = s.begin_raw();
       for (unsigned int i = 0; i < 6; ++i)
         for (unsigned int j = 0; j < 6; ++j)
-          result.access_raw_entry(6 * i + j) =
-            along * s.access_raw_entry(i) * s.access_raw_entry(j) +
-            (i < 3 && j < 3 ? vol - dev / 3. : 0.) +
-            (i == j ? (i < 3 ? dev : 0.5 * dev) : 0.);
+          C[6 * i + j] = along * components[i] * components[j];
+      for (unsigned int i = 0; i < 3; ++i)
+        for (unsigned int j = 0; j < 3; ++j)
+          C[6 * i + j] += vol - dev / 3.;
+      for (unsigned int i = 0; i < 6; ++i)
+        C[7 * i] += i < 3 ? dev : 0.5 * dev;
       return result;
     }
 
@@ -106,27 +110,32 @@ namespace Viscoplastic
 
 
 
-    /// The tangent where radial_return() has given the stress, and its inverse:
-    /// dev sigma is that of the trial stress over 1 + a, and changes by 1/(1 +
-    /// b) along itself. Both are definite, since f is convex. Nothing for other
-    /// laws and bodies, and where nothing flows.
-    std::optional<StepTangent>
+    /// The tangent where radial_return() has given the stress, and its inverse
+    /// if asked for: dev sigma is that of the trial stress over 1 + a, and
+    /// changes by 1/(1 + b) along itself. Both are definite, since f is convex.
+    /// Nothing for other laws and bodies, and where nothing flows.
+    std::optional<SymmetricTensor<4, 3>>
     radial_tangent(const ViscoplasticLaw       &law,
                    const SymmetricTensor<2, 3> &stress,
                    const double                 k,
                    const Stiffness             &stiffness,
-                   const LawPoint              &point)
+                   const LawPoint              &point,
+                   SymmetricTensor<4, 3>       *compliance = nullptr)
     {
       const auto factors = radial_factors(law, stress, k, stiffness, point);
       if (!factors)
         return {};
       const auto &[a, b, s] = *factors;
       const double mu = stiffness.shear_modulus(), K = stiffness.bulk_modulus();
-      return StepTangent{
-        transversal_tensor(
-          2. * mu / (1. + a), K, 2. * mu * (a - b) / ((1. + a) * (1. + b)), s),
-        transversal_tensor(
-          (1. + a) / (2. * mu), 1. / (9. * K), (b - a) / (2. * mu), s)};
+      if (compliance != nullptr)
+        *compliance = transversal_tensor((1. + a) / (2. * mu),
+                                         1. / (9. * K),
+                                         (b - a) / (2. * mu),
+                                         s);
+      return transversal_tensor(2. * mu / (1. + a),
+                                K,
+                                2. * mu * (a - b) / ((1. + a) * (1. + b)),
+                                s);
     }
   } // namespace
 
@@ -193,7 +202,7 @@ namespace Viscoplastic
                       const LawPoint              &point)
   {
     if (const auto radial = radial_tangent(law, stress, k, stiffness, point))
-      return radial->tangent;
+      return *radial;
     const auto tangents =
       law.step_tangents(stress, strain, k, stiffness, point);
     const SymmetricTensor<4, 3> E = stiffness.tensor();
@@ -273,18 +282,22 @@ namespace Viscoplastic
 
 
 
-  StepTangent
+  SymmetricTensor<4, 3>
   step_tangent(const ViscoplasticLaw       &law,
                const SymmetricTensor<2, 3> &stress,
                const SymmetricTensor<2, 3> &strain,
                const double                 k,
                const Stiffness             &stiffness,
-               const LawPoint              &point)
+               const LawPoint              &point,
+               SymmetricTensor<4, 3>       *compliance)
   {
-    if (const auto radial = radial_tangent(law, stress, k, stiffness, point))
+    if (const auto radial =
+          radial_tangent(law, stress, k, stiffness, point, compliance))
       return *radial;
     const SymmetricTensor<4, 3> C = definite_tangent(
       algorithmic_tangent(law, stress, strain, k, stiffness, point), stiffness);
-    return {C, invert(C)};
+    if (compliance != nullptr)
+      *compliance = invert(C);
+    return C;
   }
 } // namespace Viscoplastic

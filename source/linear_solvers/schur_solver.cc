@@ -55,11 +55,12 @@ namespace Viscoplastic
                const unsigned int               n,
                const bool                       with_values)
     {
-      constexpr unsigned int    none = numbers::invalid_unsigned_int;
-      const Epetra_CrsMatrix   &crs  = matrix.trilinos_matrix();
-      std::vector<unsigned int> position(crs.NumMyRows(), none);
+      constexpr unsigned int  none = numbers::invalid_unsigned_int;
+      const Epetra_CrsMatrix &crs  = matrix.trilinos_matrix();
+      // Of columns in the matrix.
+      std::vector<unsigned int> position(crs.NumMyCols(), none);
       for (unsigned int i = 0; i < n; ++i)
-        position[unknowns[i]] = i;
+        position[crs.LCID(static_cast<int>(unknowns[i]))] = i;
       std::vector<SuiteSparse_long> begin(n + 1, 0);
       const auto                    for_each = [&](const auto &visit) {
         for (unsigned int column = 0; column < n; ++column)
@@ -69,7 +70,7 @@ namespace Viscoplastic
             crs.ExtractMyRowView(unknowns[column], length, values, indices);
             for (int e = 0; e < length; ++e)
               {
-                const unsigned int row = position[crs.GCID(indices[e])];
+                const unsigned int row = position[indices[e]];
                 if (row != none && row <= column)
                   visit(column, row, values[e]);
               }

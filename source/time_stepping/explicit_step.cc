@@ -147,6 +147,7 @@ namespace Viscoplastic
         // The predictor of Heun's method may have been another one.
         const ContactReport earlier = solution.report;
         solution.stay(problem, d.space, d.face.get());
+        solution.irreversible = problem.old.forces.irreversible;
         solution.report.add_earlier(earlier);
         solution.is_unchanged = earlier.linear_iterations == 0;
         return;
@@ -154,7 +155,10 @@ namespace Viscoplastic
     solution.is_unchanged = false;
     DistributedVector right_side(problem.load.values);
     if (d.scene().has_irreversible_stress()) // collective, also without cells
-      add_irreversible_load(d.stress_space, state.z, right_side);
+      {
+        solution.irreversible = irreversible_forces(d.stress_space, state.z);
+        right_side -= solution.irreversible;
+      }
 
     // (3.20): u_n for the z_n that (3.19) has given.
     DistributedVector u = solver.initial_guess(problem, guess, state.contact);

@@ -29,27 +29,28 @@ namespace Viscoplastic
     {
       const State<dim>  &old = accepted.state, &state = end.state;
       const Forces<dim> &old_forces = accepted.forces, &forces = end.forces;
-      DistributedVector  u(forces.u), internal(forces.internal);
-      u -= old_forces.u;
-      internal -= old_forces.internal;
-      double irreversible = 0.; // (dz, eps(du))
-      if (forces.irreversible.size() > 0)
-        irreversible = u * forces.irreversible - u * old_forces.irreversible;
-      // |sigma|^2 = a(u, u) + 2 (z, eps(u)) + |z|^2.
-      std::vector<double>     sums(4, 0.); // |dz|^2, |z|^2, points
+      // |dz|^2 and |z|^2 of what does not flow, (dz, eps(du)), points that
+      // change, and all.
+      std::vector<double>     sums(5, 0.);
       const StressSpace<dim> &space = discretization.stress_space;
-      std::size_t             i     = 0;
-      if (!state.z.empty())
-        for (std::size_t c = 0; c < space.n_cells(); ++c)
-          for (unsigned int s = 0; s < space.n_samples; ++s, ++i)
+      if (!discretization.scene().has_viscosity() && !state.z.empty())
+        {
+          std::vector<SymmetricTensor<2, 3>> change(space.n_samples);
+          for (std::size_t c = 0; c < space.n_cells(); ++c)
             {
-              const Stiffness &stiffness = space.moduli(c);
-              sums[0] += space.weight(c, s) *
-                         stiffness.complementary_square(state.z[i] - old.z[i]);
-              sums[1] +=
-                space.weight(c, s) * stiffness.complementary_square(state.z[i]);
+              const auto *z = &state.z[c * space.n_samples];
+              for (unsigned int s = 0; s < space.n_samples; ++s)
+                change[s] = z[s] - old.z[c * space.n_samples + s];
+              sums[0] +=
+                space.complementary_product(c, change.data(), change.data());
+              sums[1] += space.complementary_product(c, z, z);
             }
-      sums[3] = state.contact.n_points();
+        }
+      if (forces.irreversible.size() > 0)
+        for (unsigned int i = 0; i < forces.u.locally_owned_size(); ++i)
+          sums[2] += (forces.u.begin()[i] - old_forces.u.begin()[i]) *
+                     (forces.irreversible.begin()[i] -
+                      old_forces.irreversible.begin()[i]);
       for (unsigned int p = 0; p < state.contact.n_points(); ++p)
         {
           const auto holds = [&](const ContactState &contact) {
@@ -58,11 +59,16 @@ namespace Viscoplastic
                       contact.multiplier[p][0] :
                       contact.bound[p]) > 0.;
           };
-          sums[2] += holds(old.contact) != holds(state.contact) ? 1. : 0.;
+          sums[3] += holds(old.contact) != holds(state.contact) ? 1. : 0.;
         }
+      sums[4] = state.contact.n_points();
       Utilities::MPI::sum(sums, discretization.space.communicator, sums);
-      const double strain = u * internal - irreversible,
-                   energy = 2. * forces.strain_energy;
+      // |sigma|^2 = a(u, u) + 2 (z, eps(u)) + |z|^2, of the step and its end.
+      const ErrorEstimate &errors = end.errors;
+      const double         strain = state.k * state.k * errors.velocity_square,
+                   energy         = 2. * forces.strain_energy;
+      sums[0] += errors.irreversible_change * errors.irreversible_change;
+      sums[1] += errors.irreversible_norm * errors.irreversible_norm;
       // Rounding may make differences and energies negative.
       const auto share = [](const double part, const double whole) {
         return whole > 0. ? std::sqrt(std::max(part, 0.) / whole) :
@@ -70,9 +76,9 @@ namespace Viscoplastic
       };
       // Points count twice, since dual solutions jump with them.
       return std::max(share(strain, energy),
-                      share(strain + 2. * irreversible + sums[0],
+                      share(strain + 2. * sums[2] + sums[0],
                             energy + 2. * forces.irreversible_work + sums[1])) +
-             (sums[3] > 0. ? 2. * sums[2] / sums[3] : 0.);
+             (sums[4] > 0. ? 2. * sums[3] / sums[4] : 0.);
     }
 
 
@@ -156,21 +162,17 @@ namespace Viscoplastic
                            const FlowRate            *old_rate,
                            AcceptedStep<dim>         &step)
   {
-    EvaluatedState<dim>        &end    = step.end;
-    const State<dim>           &state  = end.state;
-    const std::optional<double> growth = growth_since_estimate(accepted, end);
-    if (growth || (step.is_unchanged && estimate_is_of_state_alone))
-      end.space_estimate = accepted.space_estimate;
-    else
-      // The step may have gone where the law has no value.
-      as_part_of_step(state.n, state.t, [&] {
-        estimate(end);
-        return 0;
-      });
-    if (growth)
-      end.space_estimate.scale(*growth);
+    EvaluatedState<dim> &end   = step.end;
+    const State<dim>    &state = end.state;
     if (error_estimator == nullptr)
-      return {};
+      {
+        if (space_estimator)
+          {
+            TimerOutput::Scope phase(timer, "estimate");
+            estimate_step(accepted, {}, step);
+          }
+        return {};
+      }
     if (scene.has_viscosity() && !end.rate)
       {
         TimerOutput::Scope phase(timer, "rate");
@@ -214,6 +216,9 @@ namespace Viscoplastic
                             accepted,
                             old_rate,
                             end);
+    const std::optional<double> growth = growth_since_estimate(accepted, end);
+    estimate_step(accepted, growth, step);
+    error_estimator->assess_space(accepted.errors, end);
     if (quantity_estimator)
       quantity_estimator->assess(solver_of_elasticity().bulk(),
                                  slip_defects ? &*slip_defects : nullptr,
@@ -290,6 +295,26 @@ namespace Viscoplastic
 
   template <int dim>
   void
+  TimeStepper<dim>::estimate_step(const EvaluatedState<dim>   &accepted,
+                                  const std::optional<double> &growth,
+                                  AcceptedStep<dim>           &step) const
+  {
+    EvaluatedState<dim> &end = step.end;
+    if (growth || (step.is_unchanged && estimate_is_of_state_alone))
+      end.space_estimate = accepted.space_estimate;
+    else
+      // The step may have gone where the law has no value.
+      end.space_estimate = as_part_of_step(end.state.n, end.state.t, [&] {
+        return space_estimator->estimate(end.state, end.forces);
+      });
+    if (growth)
+      end.space_estimate.scale(*growth);
+  }
+
+
+
+  template <int dim>
+  void
   TimeStepper<dim>::estimate(EvaluatedState<dim> &evaluated) const
   {
     if (!space_estimator)
@@ -317,6 +342,7 @@ namespace Viscoplastic
 
   VISCOPLASTIC_INSTANTIATE_MEMBER(TimeStepper, assess);
   VISCOPLASTIC_INSTANTIATE_MEMBER(TimeStepper, growth_since_estimate);
+  VISCOPLASTIC_INSTANTIATE_MEMBER(TimeStepper, estimate_step);
   VISCOPLASTIC_INSTANTIATE_MEMBER(TimeStepper, estimate);
   VISCOPLASTIC_INSTANTIATE_MEMBER(TimeStepper, estimate_quantity);
 } // namespace Viscoplastic

@@ -235,7 +235,8 @@ namespace Viscoplastic
       step.end.forces = evaluate_forces(discretization.stress_space,
                                         discretization.matrix,
                                         std::move(problem.load),
-                                        step.end.state);
+                                        step.end.state,
+                                        std::move(solution.irreversible));
     step.end.is_solution = true;
     step.end.report      = step.report;
     // G at the end of this step is that at the start of the next one.

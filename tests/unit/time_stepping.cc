@@ -208,10 +208,17 @@ namespace
                               body.discretization->matrix,
                               body.discretization->loads.assemble(0.5),
                               start.state);
-            const FlowRate rate = body.rate();
-            u.push_back(
-              body.stepper->try_step(body.accepted, &rate, {2, 0.5, 0.5 + k, k})
-                .end.state.u);
+            const FlowRate          rate = body.rate();
+            const AcceptedStep<dim> step =
+              body.stepper->try_step(body.accepted,
+                                     &rate,
+                                     {2, 0.5, 0.5 + k, k});
+            u.push_back(step.end.state.u);
+            // Those of z that the step has solved with are of its end.
+            DistributedVector missing = step.end.forces.irreversible;
+            missing -= irreversible_forces(body.discretization->stress_space,
+                                           step.end.state.z);
+            EXPECT_EQ(missing.linfty_norm(), 0.);
           }
         differences.push_back(difference(u[0], u[1]));
       }

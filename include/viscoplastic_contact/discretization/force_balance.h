@@ -34,13 +34,15 @@ namespace Viscoplastic
     }
   };
 
+  /// @p irreversible: irreversible_forces() of the state, if they are known.
   /// Collective.
   template <int dim>
   Forces<dim>
   evaluate_forces(const StressSpace<dim>  &stress_space,
                   const DistributedMatrix &matrix,
                   Load<dim>                load,
-                  const State<dim>        &state);
+                  const State<dim>        &state,
+                  DistributedVector        irreversible = DistributedVector());
 
   /// What rounding leaves of a state in the energy norm: of displacements of
   /// the whole body, as it is carried along, and of loads and forces of z that

@@ -5,6 +5,7 @@
 
 #include <viscoplastic_contact/discretization/admissible_space.h>
 #include <viscoplastic_contact/discretization/elasticity.h>
+#include <viscoplastic_contact/laws/strain.h>
 
 #include <array>
 #include <map>
@@ -146,6 +147,19 @@ namespace Viscoplastic
       return result;
     }
 
+    /// int E^-1 a : b over a cell, from its samples.
+    double
+    complementary_product(const std::size_t            cell,
+                          const SymmetricTensor<2, 3> *a,
+                          const SymmetricTensor<2, 3> *b) const
+    {
+      const Stiffness &stiffness = moduli(cell);
+      double           sum       = 0.;
+      for (unsigned int s = 0; s < n_samples; ++s)
+        sum += weight(cell, s) * stiffness.complementary_product(a[s], b[s]);
+      return sum;
+    }
+
     /// sigma = E eps(u) + z, cell means; @p z may be empty (no viscosity).
     std::vector<SymmetricTensor<2, 3>>
     mean_stress(const DistributedVector  &ghosted_u,
@@ -161,13 +175,38 @@ namespace Viscoplastic
     static constexpr unsigned int n_vertices =
       GeometryInfo<dim>::vertices_per_cell;
 
-    /// The strain from the gradients of shape functions, and hoop strains or
-    /// null, at the vertices.
-    SymmetricTensor<2, 3>
-    strain_at(const std::size_t     cell,
-              const double         *u,
+    using NodalValues = std::array<Tensor<1, dim>, n_vertices>;
+
+    /// u at the vertices of a cell.
+    NodalValues
+    displacements(const std::size_t cell, const double *u) const
+    {
+      const unsigned int *node = nodes_of_cell(cell);
+      NodalValues         result;
+      for (unsigned int v = 0; v < n_vertices; ++v)
+        for (unsigned int d = 0; d < dim; ++d)
+          result[v][d] = u[node[v] + d];
+      return result;
+    }
+
+    /// The strain of these values from the gradients of shape functions, and
+    /// hoop strains or null, at the vertices; zz of the whole section.
+    static SymmetricTensor<2, 3>
+    strain_at(const NodalValues    &values,
               const Tensor<1, dim> *gradient,
-              const double         *hoop) const;
+              const double         *hoop,
+              double                zz)
+    {
+      Tensor<2, dim> sum;
+      for (unsigned int v = 0; v < n_vertices; ++v)
+        for (unsigned int i = 0; i < dim; ++i)
+          for (unsigned int j = 0; j < dim; ++j)
+            sum[i][j] += values[v][i] * gradient[v][j];
+      if (hoop != nullptr)
+        for (unsigned int v = 0; v < n_vertices; ++v)
+          zz += values[v][0] * hoop[v];
+      return strain(sum, zz);
+    }
 
     std::vector<unsigned int> nodes;  // n_vertices a cell
     std::vector<unsigned int> shapes; // of cells
@@ -178,6 +217,9 @@ namespace Viscoplastic
     /// the body is one of revolution; and 1 each, positions from vertex 0.
     std::vector<double>         hoops, weights;
     std::vector<Tensor<1, dim>> positions;
+    /// Means of gradients and hoop strains, n_vertices each.
+    std::vector<Tensor<1, dim>> mean_gradients;
+    std::vector<double>         mean_hoops;
   };
 
 

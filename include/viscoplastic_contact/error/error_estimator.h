@@ -105,9 +105,9 @@ namespace Viscoplastic
     double
     tolerance(const ErrorEstimate &accepted) const;
 
-    /// Set the estimate and the fields of time errors of the end of a step. Its
-    /// forces and space estimate, and with viscosity the rates of both states,
-    /// have been evaluated. @p defect: of the scheme of the step. @p
+    /// Set the fields of time errors of the end of a step, and the estimate but
+    /// for assess_space(). Its forces, and with viscosity the rates of both
+    /// states, have been evaluated. @p defect: of the scheme of the step. @p
     /// slip_defects, @p slip_begun: of the step, if any; @p missed_work: that
     /// of friction bounds which it has missed (ContactFace::missed_bounds());
     /// @p swing: the swing_of_data() of the step. @p is_fresh: at its beginning
@@ -124,6 +124,11 @@ namespace Viscoplastic
            const EvaluatedState<dim> &accepted,
            const FlowRate            *accepted_rate,
            EvaluatedState<dim>       &end) const;
+
+    /// Take what is of the mesh in the estimate of the end of a step from its
+    /// space estimate.
+    void
+    assess_space(const ErrorEstimate &before, EvaluatedState<dim> &end) const;
 
   private:
     /// Add the defect of a step to the field of time errors, and put the norms

@@ -63,6 +63,7 @@ namespace Viscoplastic
       /// what flows; empty if the law is linear.
       std::function<SymmetricTensor<2, 3>(const std::size_t            cell,
                                           const unsigned int           sample,
+                                          const SymmetricTensor<2, 3> &strain,
                                           const SymmetricTensor<2, 3> &e)>
         remainder;
     };
@@ -78,8 +79,9 @@ namespace Viscoplastic
 
     /// a(e_u, e_w) by active cell in the form of the tangents C, of the strain
     /// errors of a displacement and a dual solution @p w with their signs;
-    /// @p tangents are by sample, other arguments and the result as of
-    /// estimate(). What is taken of w is kept in @p dual, empty at first.
+    /// @p tangents are by sample, or null for those of elasticity, other
+    /// arguments and the result as of estimate(). What is taken of w is kept in
+    /// @p dual, empty at first.
     ///
     ///     int e_u : C e_w - int r(-e_u) : C eps(w_h)
     ///
@@ -111,7 +113,7 @@ namespace Viscoplastic
     multiply(const DistributedVector                  &u,
              const IrreversibleStress                 &z,
              const DistributedVector                  &w,
-             const std::vector<SymmetricTensor<4, 3>> &tangents,
+             const std::vector<SymmetricTensor<4, 3>> *tangents,
              const Linearization                      &law,
              OfDual                                   &dual) const;
 
@@ -219,7 +221,7 @@ namespace Viscoplastic
     void
     renew(const Part                               &part,
           const DistributedVector                  &w,
-          const std::vector<SymmetricTensor<4, 3>> &tangents,
+          const std::vector<SymmetricTensor<4, 3>> *tangents,
           OfDual                                   &dual) const;
 
     /// Set the shear along planes of symmetry to zero.

@@ -86,7 +86,7 @@ namespace Viscoplastic
     multiply_recovered(
       const State<dim>                                     &state,
       const DualSolution<dim>                              &dual,
-      const std::vector<SymmetricTensor<4, 3>>             &tangents,
+      const std::vector<SymmetricTensor<4, 3>>             *tangents,
       const typename RecoveryEstimator<dim>::Linearization &law,
       typename RecoveryEstimator<dim>::OfDual              &kept) const
     {

@@ -163,20 +163,15 @@ namespace Viscoplastic
                    const Stiffness             &stiffness,
                    const LawPoint              &point);
 
-  /// The positive definite tangent that linear solvers use in the place of C,
-  /// and its inverse.
-  struct StepTangent
-  {
-    SymmetricTensor<4, 3> tangent, compliance;
-  };
-
+  /// The positive definite tangent that linear solvers use in the place of C:
   /// definite_tangent() of algorithmic_tangent(); in closed form for radial
-  /// flow in isotropic bodies.
-  StepTangent
+  /// flow in isotropic bodies. If asked for, also its inverse.
+  SymmetricTensor<4, 3>
   step_tangent(const ViscoplasticLaw       &law,
                const SymmetricTensor<2, 3> &stress,
                const SymmetricTensor<2, 3> &strain,
                const double                 k,
                const Stiffness             &stiffness,
-               const LawPoint              &point);
+               const LawPoint              &point,
+               SymmetricTensor<4, 3>       *compliance = nullptr);
 } // namespace Viscoplastic

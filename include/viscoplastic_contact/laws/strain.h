@@ -27,7 +27,7 @@ namespace Viscoplastic
   /// zz is @p zz, u_r/r in bodies of revolution, and the rest of what has z is
   /// zero.
   template <int dim>
-  SymmetricTensor<2, 3>
+  DEAL_II_ALWAYS_INLINE inline SymmetricTensor<2, 3>
   strain(const Tensor<2, dim> &gradient, const double zz = 0.)
   {
     SymmetricTensor<2, 3> result;

@@ -119,6 +119,8 @@ namespace Viscoplastic
   struct StepSolution : public StepOutcome
   {
     State<dim> state;
+    /// irreversible_forces() of the state, where the scheme has made them.
+    DistributedVector irreversible;
     /// G at the end of the step, where the scheme has evaluated it.
     std::optional<FlowRate> end_rate;
 

@@ -142,10 +142,17 @@ namespace Viscoplastic
            const FlowRate            *old_rate,
            AcceptedStep<dim>         &step);
 
+    /// Make the space estimate of the end of a step, or take that of the state
+    /// before times @p growth. Throws StepFailure. Collective.
+    void
+    estimate_step(const EvaluatedState<dim>   &accepted,
+                  const std::optional<double> &growth,
+                  AcceptedStep<dim>           &step) const;
+
     /// The energy norm at the end of a step over that before it, in which
     /// proportion its space estimate is that of the state before: of states
-    /// that have hardly moved since one has been made.
-    /// Collective.
+    /// that have hardly moved since one has been made. The time errors of the
+    /// step are known. Collective.
     std::optional<double>
     growth_since_estimate(const EvaluatedState<dim> &accepted,
                           EvaluatedState<dim>       &end) const;

@@ -2,8 +2,6 @@
 #include <viscoplastic_contact/base/number_range.h>
 #include <viscoplastic_contact/discretization/force_balance.h>
 
-#include <Epetra_Vector.h>
-
 #include <limits>
 
 namespace Viscoplastic
@@ -81,12 +79,9 @@ namespace Viscoplastic
     const auto          square = [](const double x) { return x * x; };
     const bool          has_z  = forces.irreversible.size() > 0;
     std::vector<double> sums(2, 0.);
-    // At once: to look for one entry is slow.
-    Epetra_Vector diagonal(matrix.trilinos_matrix().RowMap());
-    matrix.trilinos_matrix().ExtractDiagonalCopy(diagonal);
     for (std::size_t i = 0; i < space.owned.n_elements(); ++i)
       {
-        const double stiffness = diagonal[i];
+        const double stiffness = matrix.diagonal(i);
         if (!(stiffness > 0.))
           continue;
         const double z = has_z ? forces.irreversible.begin()[i] : 0.;

@@ -43,10 +43,8 @@ namespace
       std::vector<double> is_unknown(n, 0.);
       for (const auto i : scenario.space->owned)
         {
-          for (auto entry = scenario.matrix.begin(i);
-               entry != scenario.matrix.end(i);
-               ++entry)
-            entries[i * n + entry->column()] = entry->value();
+          for (unsigned int j = 0; j < n; ++j)
+            entries[i * n + j] = scenario.matrix.el(i, j);
           if (!scenario.space
                  ->excluded()[scenario.space->owned.index_within_set(i)])
             is_unknown[i] = 1.;

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <deal.II/base/mpi.h>
+#include <deal.II/lac/trilinos_vector.h>
 
-#include <viscoplastic_contact/base/linear_algebra.h>
+#include <viscoplastic_contact/base/distributed_matrix.h>
 
 #include <boost/serialization/utility.hpp>
 
@@ -461,14 +462,5 @@ namespace Viscoplastic
         for (std::size_t k = 0; k < received.size(); ++k)
           values[entries[k / size] * size + k % size] += received[k];
       }
-  }
-
-
-
-  void
-  DistributedMatrix::operator*=(const double factor)
-  {
-    for (double &value : values)
-      value *= factor;
   }
 } // namespace Viscoplastic

@@ -177,9 +177,6 @@ namespace Viscoplastic
     void
     compress();
 
-    void
-    operator*=(const double factor);
-
   private:
     static constexpr std::size_t no_entry = -1;
 

@@ -316,8 +316,6 @@ namespace Viscoplastic
     void
     make_frames();
     void
-    make_hanging_nodes_in_frames();
-    void
     make_couplings();
     /// v := v + factor C Q u at owned nodes, u Cartesian: the mortar
     /// interpolation Q u in the coupled directions C, or in all of them.
@@ -379,7 +377,7 @@ namespace Viscoplastic
     std::vector<unsigned int> part_of_node;
     double                    radius        = 0.;
     bool                      needs_springs = false;
-    AffineConstraints<double> hanging_cartesian, hanging_in_frames;
+    AffineConstraints<double> hanging_cartesian;
     bool                      any_hanging;
     /// Position of the first owned entry among the relevant ones.
     std::size_t first_owned;

@@ -134,7 +134,7 @@ namespace
       x.begin()[i] = d.space.excluded()[i] ? 0. : 1. + i % 7;
     print("product",
           median_seconds(9, [&] { d.matrix.vmult(y, x); }),
-          12. * d.matrix.trilinos_matrix().NumMyNonzeros() + 16. * n);
+          (matrix_bytes(dim) + 16.) * n);
     if (multigrid->vmult_matrix(y, x))
       print("shared",
             median_seconds(9, [&] { multigrid->vmult_matrix(y, x); }));

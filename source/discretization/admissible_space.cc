@@ -208,7 +208,6 @@ namespace Viscoplastic
             node_position[owned.index_within_set(dof) / dim] = cell->vertex(v);
         }
     make_frames();
-    make_hanging_nodes_in_frames();
     if (!mortar_rows.empty())
       make_couplings();
     check_rigid_motions();
@@ -304,35 +303,6 @@ namespace Viscoplastic
               hanging_entries.push_back(n * dim + d);
             }
       }
-  }
-
-
-
-  template <int dim>
-  void
-  AdmissibleSpace<dim>::make_hanging_nodes_in_frames()
-  {
-    // u_h,i = sum_m w_m sum_j directions_m[i][j] u_m,j
-    hanging_in_frames.reinit(relevant);
-    for (const auto &line : hanging_cartesian.get_lines())
-      {
-        hanging_in_frames.add_line(line.index);
-        const unsigned int i = line.index % dim;
-        for (const auto &[master, weight] : line.entries)
-          {
-            Assert(master % dim == i, ExcInternalError());
-            const NodalFrame<dim> &frame =
-              frames[frame_of_node[relevant.index_within_set(master) / dim]];
-            if (frame.is_cartesian)
-              hanging_in_frames.add_entry(line.index, master, weight);
-            else
-              for (unsigned int j = 0; j < dim; ++j)
-                hanging_in_frames.add_entry(line.index,
-                                            master - i + j,
-                                            weight * frame.directions[i][j]);
-          }
-      }
-    hanging_in_frames.close();
   }
 
 

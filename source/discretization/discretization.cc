@@ -116,8 +116,8 @@ namespace Viscoplastic
       {
         // What rounding of the matrix resists a rigid motion with.
         double sum = 0.;
-        for (const auto dof : space.owned)
-          sum += matrix.diag_element(dof);
+        for (std::size_t i = 0; i < space.owned.n_elements(); ++i)
+          sum += matrix.diagonal(i);
         sum = Utilities::MPI::sum(sum, space.communicator);
         AssertThrow(springs->total_stiffness() >
                       10. * std::numeric_limits<double>::epsilon() * sum,

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <deal.II/base/quadrature_lib.h>
-#include <deal.II/lac/trilinos_sparsity_pattern.h>
 
 #include <viscoplastic_contact/discretization/elasticity.h>
 
@@ -110,9 +109,7 @@ namespace Viscoplastic
                           const bool                  mean_dilatation,
                           DistributedMatrix          &matrix)
   {
-    TrilinosWrappers::SparsityPattern pattern;
-    space.make_sparsity_pattern(pattern);
-    matrix.reinit(pattern);
+    space.reinit(matrix);
 
     const FiniteElement<dim> &fe = space.dof_handler.get_fe();
     FEValues<dim>             fe_values(space.mapping,
@@ -143,7 +140,7 @@ namespace Viscoplastic
         space.get_dofs(cell, dofs);
         space.add_cell_matrix(dofs, cell_matrix, matrix);
       }
-    matrix.compress(VectorOperation::add);
+    matrix.compress();
   }
 
 

@@ -2,7 +2,6 @@
 #include <viscoplastic_contact/base/number_range.h>
 #include <viscoplastic_contact/discretization/force_balance.h>
 
-#include <algorithm>
 #include <limits>
 
 namespace Viscoplastic
@@ -80,18 +79,12 @@ namespace Viscoplastic
                   const DistributedMatrix    &matrix,
                   const Forces<dim>          &forces)
   {
-    const auto              square = [](const double x) { return x * x; };
-    const bool              has_z  = forces.irreversible.size() > 0;
-    std::vector<double>     sums(2, 0.);
-    const Epetra_CrsMatrix &crs = matrix.trilinos_matrix();
+    const auto          square = [](const double x) { return x * x; };
+    const bool          has_z  = forces.irreversible.size() > 0;
+    std::vector<double> sums(2, 0.);
     for (std::size_t i = 0; i < space.owned.n_elements(); ++i)
       {
-        int     length, *indices;
-        double *values;
-        crs.ExtractMyRowView(i, length, values, indices);
-        const int column = crs.LCID(crs.GRID(i));
-        const int at = std::find(indices, indices + length, column) - indices;
-        const double stiffness = at < length ? values[at] : 0.;
+        const double stiffness = matrix.diagonal(i);
         if (!(stiffness > 0.))
           continue;
         const double z = has_z ? forces.irreversible.begin()[i] : 0.;

@@ -64,11 +64,11 @@ namespace Viscoplastic
   Springs<dim>::add_to(DistributedMatrix &matrix, const double factor) const
   {
     constexpr unsigned int               n = n_nodes * dim;
-    FullMatrix<double>                   cell_matrix(n, n);
-    std::vector<types::global_dof_index> dofs(n);
+    FullMatrix<double>                   cell_matrix;
+    std::vector<types::global_dof_index> dofs;
     for (const Face &face : faces)
       {
-        cell_matrix = 0.;
+        cell_matrix.reinit(n, n);
         for (unsigned int q = 0; q < n_points; ++q)
           for (unsigned int i = 0; i < n; ++i)
             for (unsigned int j = 0; j < n; ++j)
@@ -76,10 +76,11 @@ namespace Viscoplastic
                                    shape_values[face.number][q][i / dim] *
                                    shape_values[face.number][q][j / dim] *
                                    face.stiffness[q][i % dim][j % dim];
+        dofs.resize(n);
         face.cell->get_dof_indices(dofs);
         space.add_cell_matrix(dofs, cell_matrix, matrix);
       }
-    matrix.compress(VectorOperation::add);
+    matrix.compress();
   }
 
 

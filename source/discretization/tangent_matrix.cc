@@ -148,7 +148,7 @@ namespace Viscoplastic
     const StressSpace<dim>     &stress_space = laws.stress_space;
     const AdmissibleSpace<dim> &space        = stress_space.space;
     const unsigned int          n            = stress_space.n_samples;
-    tangent_matrix.copy_from(elastic_matrix);
+    tangent_matrix                           = elastic_matrix;
 
     FullMatrix<double>                   cell_matrix;
     std::vector<types::global_dof_index> dofs;
@@ -177,7 +177,7 @@ namespace Viscoplastic
         stress_space.add_stiffness(c, change.data(), cell_matrix);
         space.add_cell_matrix(dofs, cell_matrix, tangent_matrix);
       }
-    tangent_matrix.compress(VectorOperation::add);
+    tangent_matrix.compress();
   }
 
 

@@ -118,7 +118,7 @@ namespace Viscoplastic
                               columns.begin(),
                               columns.end());
       }
-    auto matrix = std::make_unique<DistributedMatrix>();
+    auto matrix = std::make_unique<TrilinosWrappers::SparseMatrix>();
     matrix->reinit(owned, pattern, communicator);
     std::vector<double> values;
     for (unsigned int i = 0; i < n_owned; ++i)

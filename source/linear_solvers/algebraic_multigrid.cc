@@ -1,13 +1,67 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <viscoplastic_contact/linear_solvers/algebraic_multigrid.h>
+#include <deal.II/lac/dynamic_sparsity_pattern.h>
 
-#include <Epetra_Import.h>
-#include <Epetra_Vector.h>
+#include <viscoplastic_contact/linear_solvers/algebraic_multigrid.h>
 
 #include <cmath>
 
 namespace Viscoplastic
 {
+  namespace
+  {
+    /// A matrix without the rows and columns that are not kept (0 instead of 1)
+    /// but for their diagonal. Collective.
+    std::unique_ptr<TrilinosWrappers::SparseMatrix>
+    masked(const DistributedMatrix   &matrix,
+           const std::vector<double> &keep_column,
+           const unsigned int         dim)
+    {
+      const IndexSet &owned = matrix.locally_owned_range_indices();
+      const DistributedMatrix::WholeRows   rows = matrix.whole_rows();
+      std::vector<types::global_dof_index> columns;
+      std::vector<double>                  values;
+      const auto                           for_each_row = [&](const auto &act) {
+        for (unsigned int i = 0; i < matrix.n_rows(); ++i)
+          {
+            columns.clear();
+            for (std::size_t e = rows.begin[i]; e < rows.begin[i + 1]; ++e)
+              for (unsigned int d = 0; d < dim; ++d)
+                columns.push_back(matrix.global_node(rows.columns[e]) * dim +
+                                  d);
+            for (unsigned int c = 0; c < dim; ++c)
+              act(i, c);
+          }
+      };
+      DynamicSparsityPattern pattern(owned.size(), owned.size(), owned);
+      for_each_row([&](const unsigned int i, const unsigned int c) {
+        pattern.add_entries(matrix.global_node(i) * dim + c,
+                            columns.begin(),
+                            columns.end());
+      });
+      auto result = std::make_unique<TrilinosWrappers::SparseMatrix>();
+      result->reinit(owned, pattern, matrix.get_mpi_communicator());
+      for_each_row([&](const unsigned int i, const unsigned int c) {
+        values.clear();
+        for (std::size_t e = rows.begin[i]; e < rows.begin[i + 1]; ++e)
+          for (unsigned int d = 0; d < dim; ++d)
+            {
+              const unsigned int j = rows.columns[e];
+              const double       value =
+                rows.blocks[e][j < i ? d * dim + c : c * dim + d];
+              values.push_back(j == i && c == d ?
+                                 value :
+                                 value * keep_column[i * dim + c] *
+                                   keep_column[j * dim + d]);
+            }
+        result->set(matrix.global_node(i) * dim + c, columns, values);
+      });
+      result->compress(VectorOperation::insert);
+      return result;
+    }
+  } // namespace
+
+
+
   AlgebraicMultigrid::AlgebraicMultigrid(
     const DistributedMatrix       &matrix,
     std::vector<bool>              excluded_,
@@ -43,32 +97,14 @@ namespace Viscoplastic
     // Components that are cut off: excluded ones, and those of the face that
     // are blocked by themselves, such as the normal one of a node that slips on
     // the foundation.
-    const Epetra_CrsMatrix &K = matrix.trilinos_matrix();
-    Epetra_Vector           keep(K.DomainMap());
+    std::vector<double> keep(excluded.size());
     for (std::size_t i = 0; i < excluded.size(); ++i)
       keep[i] = excluded[i] ? 0. : 1.;
     for (unsigned int n = 0; n < truncation.projector.size(); ++n)
       for (unsigned int i = 0; i < face.n_node_dofs(n); ++i)
         if (truncation.projector[n][i][i] == 0.)
           keep[restriction.positions()[face.first_dof[n] + i]] = 0.;
-    Epetra_Vector keep_column(K.ColMap());
-    if (K.Importer() != nullptr)
-      keep_column.Import(keep, *K.Importer(), Insert);
-    else
-      keep_column = keep;
-
-    auto masked_matrix = std::make_unique<DistributedMatrix>();
-    masked_matrix->copy_from(matrix);
-    const Epetra_CrsMatrix &M = masked_matrix->trilinos_matrix();
-    for (int i = 0; i < M.NumMyRows(); ++i)
-      {
-        int     length, *indices;
-        double *values;
-        M.ExtractMyRowView(i, length, values, indices);
-        for (int e = 0; e < length; ++e)
-          if (M.GCID(indices[e]) != M.GRID(i))
-            values[e] *= keep[i] * keep_column[indices[e]];
-      }
+    auto masked_matrix = masked(matrix, matrix.at_columns(keep.data()), dim);
 
     // The springs of slipping points, which the cut-off rows do not have.
     if (truncation.has_springs(face))
@@ -120,7 +156,7 @@ namespace Viscoplastic
       return;
     damping.reinit(face.n_dofs());
     for (unsigned int k = 0; k < face.n_dofs(); ++k)
-      damping[k] = matrix.diag_element(restriction.dofs()[k]);
+      damping[k] = matrix.diagonal(restriction.positions()[k]);
     for (unsigned int n = 0; n < face.n_nodes(); ++n)
       for (unsigned int i = 0; i < face.n_node_dofs(n); ++i)
         {

@@ -129,8 +129,8 @@ namespace Viscoplastic
     const bool is_new = levels[0]->space == nullptr;
     // A power of two changes no digit.
     double largest = 0.;
-    for (const auto row : matrix.locally_owned_range_indices())
-      largest = std::max(largest, matrix.diag_element(row));
+    for (std::size_t i = 0; i < excluded.size(); ++i)
+      largest = std::max(largest, matrix.diagonal(i));
     unit =
       std::ldexp(1., std::ilogb(Utilities::MPI::max(largest, communicator)));
     BlockRows<dim> rows = cartesian_rows<dim>(
@@ -344,8 +344,7 @@ namespace Viscoplastic
     for (std::size_t i = hierarchy.first_level.size() * dim;
          i < excluded.size();
          ++i)
-      y.begin()[i] =
-        x.begin()[i] / matrix.diag_element(matrix.local_range().first + i);
+      y.begin()[i] = x.begin()[i] / matrix.diagonal(i);
   }
 
 

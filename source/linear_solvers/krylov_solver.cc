@@ -56,7 +56,7 @@ namespace Viscoplastic
         return;
       w = 0.;
       solver.restriction.set(change, w);
-      solver.multiply_face(change, product);
+      solver.matrix.vmult(product, w, solver.face_blocks);
       take_step(1.);
     }
 

@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <viscoplastic_contact/linear_solvers/residual_rounding.h>
 
-#include <Epetra_Import.h>
-#include <Epetra_Vector.h>
-
 #include <cmath>
 #include <limits>
 #include <random>
@@ -17,27 +14,29 @@ namespace Viscoplastic
     const DistributedVector                          &u,
     const std::function<double(DistributedVector &)> &squared_norm)
   {
-    const Epetra_CrsMatrix &K = matrix.trilinos_matrix();
-    Epetra_Vector           values_of_columns(K.ColMap());
-    if (K.Importer() != nullptr)
-      values_of_columns.Import(u.trilinos_vector(), *K.Importer(), Insert);
-    else
-      values_of_columns = *u.trilinos_vector()(0);
-    DistributedVector size(load);
-    for (int i = 0; i < K.NumMyRows(); ++i)
-      {
-        int     length, *columns;
-        double *values;
-        K.ExtractMyRowView(i, length, values, columns);
-        double sum = std::abs(load.begin()[i]);
-        for (int e = 0; e < length; ++e)
-          sum += std::abs(values[e] * values_of_columns[columns[e]]);
-        size.begin()[i] = std::numeric_limits<double>::epsilon() * sum;
-      }
+    const std::vector<double> at_columns = matrix.at_columns(u.begin());
+    const unsigned int        dim        = matrix.block_size();
+    DistributedVector         size(load);
+    for (double &entry : size)
+      entry = std::abs(entry);
+    matrix.for_each_block(
+      [&](const unsigned int i, const unsigned int j, const double *block) {
+        for (unsigned int c = 0; c < dim; ++c)
+          for (unsigned int d = 0; d < dim; ++d)
+            {
+              const unsigned int row = i * dim + c, column = j * dim + d;
+              const double       size_of_entry = std::abs(block[c * dim + d]);
+              size.begin()[row] += size_of_entry * std::abs(at_columns[column]);
+              if (j != i && j < matrix.n_rows())
+                size.begin()[column] +=
+                  size_of_entry * std::abs(at_columns[row]);
+            }
+      });
+    size *= std::numeric_limits<double>::epsilon();
 
     constexpr unsigned int n_samples = 4;
     // The same signs again and again; others on each rank.
-    std::mt19937 random(1 + matrix.local_range().first);
+    std::mt19937 random(1 + load.local_range().first);
     double       mean = 0.;
     for (unsigned int sample = 0; sample < n_samples; ++sample)
       {

@@ -55,26 +55,24 @@ namespace Viscoplastic
                const unsigned int               n,
                const bool                       with_values)
     {
-      constexpr unsigned int  none = numbers::invalid_unsigned_int;
-      const Epetra_CrsMatrix &crs  = matrix.trilinos_matrix();
-      // Of columns in the matrix.
-      std::vector<unsigned int> position(crs.NumMyCols(), none);
+      constexpr unsigned int    none = numbers::invalid_unsigned_int;
+      const unsigned int        dim  = matrix.block_size();
+      std::vector<unsigned int> position(matrix.m(), none);
       for (unsigned int i = 0; i < n; ++i)
-        position[crs.LCID(static_cast<int>(unknowns[i]))] = i;
+        position[unknowns[i]] = i;
       std::vector<SuiteSparse_long> begin(n + 1, 0);
       const auto                    for_each = [&](const auto &visit) {
-        for (unsigned int column = 0; column < n; ++column)
-          {
-            int     length, *indices;
-            double *values;
-            crs.ExtractMyRowView(unknowns[column], length, values, indices);
-            for (int e = 0; e < length; ++e)
-              {
-                const unsigned int row = position[indices[e]];
-                if (row != none && row <= column)
-                  visit(column, row, values[e]);
-              }
-          }
+        matrix.for_each_block(
+          [&](const unsigned int i, const unsigned int j, const double *block) {
+            for (unsigned int c = 0; c < dim; ++c)
+              for (unsigned int d = i == j ? c : 0; d < dim; ++d)
+                {
+                  const unsigned int a = position[i * dim + c],
+                                     b = position[j * dim + d];
+                  if (a != none && b != none)
+                    visit(std::max(a, b), std::min(a, b), block[c * dim + d]);
+                }
+          });
       };
       for_each([&](const unsigned int column,
                    const unsigned int,

@@ -15,9 +15,9 @@
 namespace Viscoplastic
 {
   SmoothedAggregation::SmoothedAggregation(
-    std::unique_ptr<DistributedMatrix> matrix_,
-    std::vector<double>                near_null_space_,
-    const unsigned int                 dim)
+    std::unique_ptr<TrilinosWrappers::SparseMatrix> matrix_,
+    std::vector<double>                             near_null_space_,
+    const unsigned int                              dim)
     : matrix(std::move(matrix_))
     , near_null_space(std::move(near_null_space_))
     , amg(std::make_unique<TrilinosWrappers::PreconditionAMG>())

@@ -226,14 +226,15 @@ namespace Viscoplastic
   {
     const unsigned int dim    = demand.dim;
     const double       n_dofs = demand.n_dofs, n_face_dofs = demand.n_face_dofs;
-    // 12 bytes an entry, 9 or 27 neighbors a node; some 20 vectors.
-    const double matrix  = n_dofs * (dim == 2 ? 18. : 81.) * 12.;
-    const double vectors = n_dofs * 20. * 8.;
+    const double       matrix  = n_dofs * matrix_bytes(dim);
+    const double       vectors = n_dofs * 20. * 8.; // some 20
     if (kind == BulkSolverKind::geometric_multigrid)
       return matrix + vectors + n_dofs * (dim == 2 ? 1200. : 1500.);
-    // A second matrix without the prescribed rows, and ML.
+    // A second matrix without the prescribed rows, of 12 bytes an entry, and
+    // ML.
     if (kind == BulkSolverKind::algebraic_multigrid)
-      return 2. * matrix + vectors + n_dofs * (dim == 2 ? 850. : 2700.);
+      return matrix + vectors +
+             n_dofs * (dim == 2 ? 18. * 12. + 850. : 81. * 12. + 2700.);
     // Nested dissection: n log n entries in 2D, n^(4/3) in 3D.
     const double factor = dim == 2 ?
                             n_dofs * 78. * std::log2(std::max(n_dofs, 2.)) :

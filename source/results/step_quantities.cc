@@ -46,11 +46,9 @@ namespace Viscoplastic
     double
     force_of_rounding(const Discretization<dim> &d, const DistributedVector &u)
     {
-      const IndexSet &owned = d.space.owned;
-      double          sum   = 0.;
-      for (std::size_t i = 0; i < owned.n_elements(); ++i)
-        sum += d.matrix.diag_element(owned.nth_index_in_set(i)) *
-               std::abs(u.begin()[i]);
+      double sum = 0.;
+      for (std::size_t i = 0; i < d.space.owned.n_elements(); ++i)
+        sum += d.matrix.diagonal(i) * std::abs(u.begin()[i]);
       return std::numeric_limits<double>::epsilon() *
              Utilities::MPI::sum(sum, d.space.communicator);
     }

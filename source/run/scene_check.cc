@@ -138,7 +138,7 @@ namespace Viscoplastic
         expected_memory(solver, demand) +
         (scene.is_implicit() || scene.is_implicit_beyond_the_limit() ?
            // A second matrix, and two tensors of rank 4 a sample.
-           dof_handler.n_dofs() * (dim == 2 ? 18. : 81.) * 12. +
+           dof_handler.n_dofs() * matrix_bytes(dim) +
              2. * sizeof(SymmetricTensor<4, 3>) *
                discretization.stress_space.n_samples * n_cells :
            0.) +

@@ -108,17 +108,14 @@ namespace Viscoplastic
   {
     const AdmissibleSpace<dim> &space = discretization.space;
     singular_matrix                   = &matrix;
-    regular_matrix.copy_from(matrix);
-    springs  = space.owned_vector();
+    regular_matrix                    = matrix;
+    springs                           = space.owned_vector();
     rounding = std::numeric_limits<double>::epsilon() / spring_stiffness;
     for (const unsigned int i : supports)
       {
-        const auto   dof      = space.owned.nth_index_in_set(i);
-        const double diagonal = matrix.diag_element(dof);
-        springs.begin()[i]    = spring_stiffness * diagonal;
-        regular_matrix.set(dof, dof, diagonal + springs.begin()[i]);
+        springs.begin()[i] = spring_stiffness * matrix.diagonal(i);
+        regular_matrix.add_to_diagonal(i, springs.begin()[i]);
       }
-    regular_matrix.compress(VectorOperation::insert);
 
     // A rigid motion takes no force but that of the springs.
     DistributedVector force(springs), held(springs);

@@ -40,8 +40,7 @@ namespace Viscoplastic
     const AdmissibleSpace<dim> &space = d.space;
     diagonal                          = space.owned_vector();
     for (std::size_t i = 0; i < space.owned.n_elements(); ++i)
-      diagonal.begin()[i] =
-        matrix.diag_element(space.owned.nth_index_in_set(i));
+      diagonal.begin()[i] = matrix.diagonal(i);
     const FaceRestriction &face   = d.face_restriction();
     SolverDemand           demand = d.solver_demand();
     demand.max_poissons_ratio     = max_poissons_ratio;

@@ -5,7 +5,6 @@ namespace dealii
 {
   namespace TrilinosWrappers
   {
-    class SparseMatrix;
     namespace MPI
     {
       class Vector;
@@ -21,7 +20,7 @@ namespace Viscoplastic
   // Declared only: their headers are heavy, and rooms that see nothing of
   // linear algebra but references do without. See base/linear_algebra.h.
   using DistributedVector = dealii::TrilinosWrappers::MPI::Vector;
-  using DistributedMatrix = dealii::TrilinosWrappers::SparseMatrix;
+  class DistributedMatrix;
 
   /// Ids of boundaries and materials go up to this in mesh files, parameter
   /// files and expressions.

@@ -134,16 +134,15 @@ namespace Viscoplastic
     types::global_dof_index
     n_first_dofs() const;
 
-    /// The pattern of matrices in frames, without constrained entries.
-    /// Collective.
+    /// Make a matrix in frames zero, with entries for all cells. Collective.
     void
-    make_sparsity_pattern(TrilinosWrappers::SparsityPattern &pattern) const;
+    reinit(DistributedMatrix &matrix) const;
 
-    /// Add a Cartesian cell matrix, which changes, to one in nodal frames.
+    /// Add a Cartesian cell matrix to one in nodal frames. Both change.
     void
-    add_cell_matrix(const std::vector<types::global_dof_index> &dofs,
-                    FullMatrix<double>                         &cell_matrix,
-                    DistributedMatrix                          &matrix) const;
+    add_cell_matrix(std::vector<types::global_dof_index> &dofs,
+                    FullMatrix<double>                   &cell_matrix,
+                    DistributedMatrix                    &matrix) const;
 
     /// The constraints of hanging nodes alone, in Cartesian components.
     const AffineConstraints<double> &
@@ -317,8 +316,6 @@ namespace Viscoplastic
     void
     make_frames();
     void
-    make_hanging_nodes_in_frames();
-    void
     make_couplings();
     /// v := v + factor C Q u at owned nodes, u Cartesian: the mortar
     /// interpolation Q u in the coupled directions C, or in all of them.
@@ -343,6 +340,11 @@ namespace Viscoplastic
     void
     couple(std::vector<types::global_dof_index> &dofs,
            FullMatrix<double>                   &cell_matrix) const;
+    /// Replace hanging nodes by those that they hang on, which become further
+    /// degrees of freedom; on their own diagonal something is left.
+    void
+    resolve_hanging_nodes(std::vector<types::global_dof_index> &dofs,
+                          FullMatrix<double> &cell_matrix) const;
     void
     rotate(const std::vector<types::global_dof_index> &dofs,
            FullMatrix<double>                         &cell_matrix) const;
@@ -375,7 +377,7 @@ namespace Viscoplastic
     std::vector<unsigned int> part_of_node;
     double                    radius        = 0.;
     bool                      needs_springs = false;
-    AffineConstraints<double> hanging_cartesian, hanging_in_frames;
+    AffineConstraints<double> hanging_cartesian;
     bool                      any_hanging;
     /// Position of the first owned entry among the relevant ones.
     std::size_t first_owned;

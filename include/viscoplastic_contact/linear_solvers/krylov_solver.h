@@ -72,16 +72,14 @@ namespace Viscoplastic
     void
     make_face_matrix();
 
-    /// y := K x for a vector on the face.
-    void
-    multiply_face(const Vector<double> &x, DistributedVector &y) const;
-
     const DistributedMatrix          &matrix;
     const std::vector<bool>          &excluded;
     std::vector<std::size_t>          excluded_entries;
     const FaceRestriction            &restriction;
     const ContactLayout              &face;
     std::unique_ptr<SparseFaceMatrix> sparse_face_matrix;
+    /// The rows and columns of nodes on the face.
+    std::vector<DistributedMatrix::Place> face_blocks;
 
     std::unique_ptr<Preconditioner> preconditioner;
   };

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
+#include <deal.II/lac/trilinos_sparse_matrix.h>
+
 #include <viscoplastic_contact/base/linear_algebra.h>
 
 #include <memory>
@@ -23,9 +25,9 @@ namespace Viscoplastic
     /// @p near_null_space: rigid body modes on owned entries, one after the
     /// other, zero at constrained degrees of freedom; @p dim degrees of freedom
     /// a node. Collective.
-    SmoothedAggregation(std::unique_ptr<DistributedMatrix> matrix,
-                        std::vector<double>                near_null_space,
-                        const unsigned int                 dim);
+    SmoothedAggregation(std::unique_ptr<TrilinosWrappers::SparseMatrix> matrix,
+                        std::vector<double> near_null_space,
+                        const unsigned int  dim);
     ~SmoothedAggregation();
 
     /// y := M^{-1} x.
@@ -34,8 +36,8 @@ namespace Viscoplastic
 
   private:
     // What ML refers to.
-    std::unique_ptr<DistributedMatrix> matrix;
-    std::vector<double>                near_null_space;
+    std::unique_ptr<TrilinosWrappers::SparseMatrix> matrix;
+    std::vector<double>                             near_null_space;
     /// The unit of stiffness by which the matrix is divided.
     double                                             unit = 1.;
     std::unique_ptr<TrilinosWrappers::PreconditionAMG> amg;

@@ -88,6 +88,15 @@ namespace Viscoplastic
              const double        worth = 0.);
 
 
+  /// Bytes of the matrix a degree of freedom: with the nodes beside a node that
+  /// are not before it, and itself, it has 5 or 14 blocks.
+  constexpr double
+  matrix_bytes(const unsigned int dim)
+  {
+    return (dim == 2 ? 5. : 14.) * (8. * dim * dim + 4.) / dim;
+  }
+
+
   /// Memory in bytes that matrix, solver and vectors take beyond mesh and
   /// spaces: fitted to measurements (doc/solvers.md), good to a factor of 1.5
   /// or so.

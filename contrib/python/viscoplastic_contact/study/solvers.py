@@ -128,13 +128,14 @@ def expected_cost(solver, demand):
 def expected_memory(solver, demand):
     """In MB, what matrix, solver and vectors take beyond mesh and spaces."""
     is_2d, n = demand.dimension == 2, float(demand.dofs)
-    # 12 bytes an entry, 9 or 27 neighbors a node; some 20 vectors.
-    matrix, vectors = n * (18.0 if is_2d else 81.0) * 12.0, n * 20.0 * 8.0
+    # 5 or 14 blocks a node, with their columns; some 20 vectors.
+    matrix, vectors = n * (90.0 if is_2d else 14.0 * 76.0 / 3.0), n * 20.0 * 8.0
     if solver == GEOMETRIC:
         return 1e-6 * (matrix + vectors + n * (1200.0 if is_2d else 1500.0))
-    # A second matrix without the prescribed rows, and ML.
+    # A second matrix without the prescribed rows, of 12 bytes an entry, and ML.
     if solver == ALGEBRAIC:
-        return 1e-6 * (2.0 * matrix + vectors + n * (850.0 if is_2d else 2700.0))
+        rest = 18.0 * 12.0 + 850.0 if is_2d else 81.0 * 12.0 + 2700.0
+        return 1e-6 * (matrix + vectors + n * rest)
     # Nested dissection: n log n entries in 2D, n^(4/3) in 3D.
     factor = n * 78.0 * math.log2(max(n, 2.0)) if is_2d else n * 190.0 * n ** (1 / 3)
     return 1e-6 * (matrix + vectors + factor + 16.0 * float(demand.face_dofs) ** 2)

@@ -1,0 +1,466 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <deal.II/base/mpi.h>
+#include <deal.II/lac/trilinos_vector.h>
+
+#include <viscoplastic_contact/base/distributed_matrix.h>
+
+#include <boost/serialization/utility.hpp>
+
+#include <algorithm>
+
+namespace Viscoplastic
+{
+  namespace
+  {
+    using Node      = DistributedMatrix::Node;
+    using NodeLists = DistributedMatrix::NodeLists;
+
+
+
+    /// Add to @p lists those of other ranks that have nodes of this rank;
+    /// @p begins: the first node of each rank, and the end. Collective.
+    void
+    add_lists_of_others(NodeLists               &lists,
+                        const std::vector<Node> &begins,
+                        const MPI_Comm           communicator)
+    {
+      const unsigned int me = Utilities::MPI::this_mpi_process(communicator);
+      std::map<unsigned int, std::vector<Node>> to_send; // each with its length
+      std::vector<unsigned int>                 ranks;
+      for (std::size_t l = 0; l + 1 < lists.begin.size(); ++l)
+        {
+          const auto begin = lists.nodes.begin() + lists.begin[l],
+                     end   = lists.nodes.begin() + lists.begin[l + 1];
+          ranks.clear();
+          for (auto node = begin; node != end; ++node)
+            ranks.push_back(
+              std::upper_bound(begins.begin(), begins.end(), *node) -
+              begins.begin() - 1);
+          std::sort(ranks.begin(), ranks.end());
+          ranks.erase(std::unique(ranks.begin(), ranks.end()), ranks.end());
+          for (const unsigned int rank : ranks)
+            if (rank != me)
+              {
+                to_send[rank].push_back(end - begin);
+                to_send[rank].insert(to_send[rank].end(), begin, end);
+              }
+        }
+      for (const auto &message :
+           Utilities::MPI::some_to_some(communicator, to_send))
+        for (auto at = message.second.begin(); at != message.second.end();)
+          {
+            const auto end = at + 1 + *at;
+            lists.nodes.insert(lists.nodes.end(), at + 1, end);
+            lists.begin.push_back(lists.nodes.size());
+            at = end;
+          }
+    }
+
+
+
+    /// y := y + B x for a block of a row of y, and for its transpose.
+    template <int dim>
+    void
+    add_product(const double *block, const double *x, double *y)
+    {
+      for (unsigned int c = 0; c < dim; ++c)
+        for (unsigned int d = 0; d < dim; ++d)
+          y[c] += block[c * dim + d] * x[d];
+    }
+
+    template <int dim>
+    void
+    add_transposed_product(const double *block, const double *x, double *y)
+    {
+      for (unsigned int c = 0; c < dim; ++c)
+        for (unsigned int d = 0; d < dim; ++d)
+          y[d] += block[c * dim + d] * x[c];
+    }
+
+
+
+    template <int dim>
+    void
+    multiply(const std::size_t  *begin,
+             const unsigned int *columns,
+             const double       *block,
+             const unsigned int  n_rows,
+             const double       *x,
+             double *const __restrict y)
+    {
+      std::fill(y, y + n_rows * dim, 0.);
+      for (unsigned int i = 0; i < n_rows; ++i)
+        {
+          double        sum[dim] = {}, of_row[dim];
+          const double *x_row    = x + i * dim;
+          std::copy(x_row, x_row + dim, of_row);
+          add_product<dim>(block, of_row, sum);
+          for (std::size_t e = begin[i] + 1; e < begin[i + 1]; ++e)
+            {
+              const unsigned int j = columns[e];
+              block += dim * dim;
+              add_product<dim>(block, x + j * dim, sum);
+              if (j < n_rows)
+                add_transposed_product<dim>(block, of_row, y + j * dim);
+            }
+          block += dim * dim;
+          for (unsigned int c = 0; c < dim; ++c)
+            y[i * dim + c] += sum[c];
+        }
+    }
+  } // namespace
+
+
+
+  unsigned int
+  DistributedMatrix::Pattern::local_number(const Node node) const
+  {
+    if (node >= first && node < first + n_owned)
+      return node - first;
+    const auto ghost = std::lower_bound(ghosts.begin(), ghosts.end(), node);
+    Assert(ghost != ghosts.end() && *ghost == node, ExcInternalError());
+    return n_owned + (ghost - ghosts.begin());
+  }
+
+
+
+  bool
+  DistributedMatrix::Pattern::has(const unsigned int row,
+                                  const unsigned int column) const
+  {
+    // Of two nodes of the same rank, the first one has it.
+    if (row < n_owned)
+      return column >= row;
+    return column < n_owned || column >= row ||
+           owner_of_ghost[row - n_owned] != owner_of_ghost[column - n_owned];
+  }
+
+
+
+  std::size_t
+  DistributedMatrix::Pattern::find(const unsigned int row,
+                                   const unsigned int column) const
+  {
+    const auto row_begin = columns.begin() + begin[row],
+               row_end   = columns.begin() + begin[row + 1],
+               entry     = std::lower_bound(row_begin, row_end, column);
+    return entry != row_end && *entry == column ? entry - columns.begin() :
+                                                  no_entry;
+  }
+
+
+
+  void
+  DistributedMatrix::Pattern::add_rows(const NodeLists  &lists,
+                                       const std::size_t n_own_lists)
+  {
+    const std::size_t         n_lists = lists.begin.size() - 1;
+    const unsigned int        n_nodes = n_owned + ghosts.size();
+    std::vector<unsigned int> numbers;
+    numbers.reserve(lists.nodes.size());
+    for (const Node node : lists.nodes)
+      numbers.push_back(local_number(node));
+    // The lists of each node.
+    std::vector<std::size_t> first_list(n_nodes + 1, 0);
+    for (const unsigned int n : numbers)
+      ++first_list[n + 1];
+    for (unsigned int n = 0; n < n_nodes; ++n)
+      first_list[n + 1] += first_list[n];
+    std::vector<unsigned int> lists_of_nodes(numbers.size());
+    std::vector<std::size_t>  next(first_list.begin(), first_list.end() - 1);
+    for (std::size_t l = 0; l < n_lists; ++l)
+      for (std::size_t k = lists.begin[l]; k < lists.begin[l + 1]; ++k)
+        lists_of_nodes[next[numbers[k]]++] = l;
+
+    // More than there are as a rule; of what is not used no memory is taken.
+    columns.reserve(n_nodes * (dim == 2 ? 8ULL : 24ULL));
+    begin.reserve(n_nodes + 1);
+    std::vector<unsigned int> seen_in(n_nodes, numbers::invalid_unsigned_int);
+    for (unsigned int i = 0; i < n_nodes; ++i)
+      {
+        // The diagonal, whether there are lists or not.
+        if (i < n_owned)
+          columns.push_back(i);
+        seen_in[i] = i < n_owned ? i : numbers::invalid_unsigned_int;
+        for (std::size_t k = first_list[i]; k < first_list[i + 1]; ++k)
+          {
+            const std::size_t l = lists_of_nodes[k];
+            if (i >= n_owned && l >= n_own_lists)
+              continue; // its owner adds to it
+            for (std::size_t e = lists.begin[l]; e < lists.begin[l + 1]; ++e)
+              if (const unsigned int j = numbers[e];
+                  seen_in[j] != i && has(i, j))
+                {
+                  seen_in[j] = i;
+                  columns.push_back(j);
+                }
+          }
+        std::sort(columns.begin() + begin.back(), columns.end());
+        begin.push_back(columns.size());
+      }
+  }
+
+
+
+  void
+  DistributedMatrix::Pattern::make_exchange()
+  {
+    using Entry = std::pair<Node, Node>;
+    std::map<unsigned int, std::vector<Entry>> entries;
+    const auto                                 global = [&](const auto number) {
+      return number < n_owned ? first + number : ghosts[number - n_owned];
+    };
+    for (unsigned int g = 0; g < ghosts.size(); ++g)
+      {
+        const std::size_t row_begin = begin[n_owned + g],
+                          row_end   = begin[n_owned + g + 1];
+        if (row_begin == row_end)
+          continue;
+        const unsigned int rank = owner_of_ghost[g];
+        to_send.try_emplace(rank, row_begin, row_end).first->second.second =
+          row_end;
+        for (std::size_t e = row_begin; e < row_end; ++e)
+          entries[rank].emplace_back(ghosts[g], global(columns[e]));
+      }
+    for (const auto &[rank, received] :
+         Utilities::MPI::some_to_some(partitioner->get_mpi_communicator(),
+                                      entries))
+      for (const auto &[row, column] : received)
+        to_receive[rank].push_back(
+          find(local_number(row), local_number(column)));
+  }
+
+
+
+  void
+  DistributedMatrix::reinit(const IndexSet    &owned,
+                            const unsigned int dim,
+                            NodeLists          lists,
+                            const MPI_Comm     communicator)
+  {
+    const auto result = std::make_shared<Pattern>();
+    result->dim       = dim;
+    result->n_owned   = owned.n_elements() / dim;
+    std::vector<Node> begins(1, 0);
+    for (const unsigned int n :
+         Utilities::MPI::all_gather(communicator, result->n_owned))
+      begins.push_back(begins.back() + n);
+    result->first = begins[Utilities::MPI::this_mpi_process(communicator)];
+    const std::size_t n_own_lists = lists.begin.size() - 1;
+    if (begins.size() > 2)
+      add_lists_of_others(lists, begins, communicator);
+
+    for (const Node node : lists.nodes)
+      if (node < result->first || node >= result->first + result->n_owned)
+        result->ghosts.push_back(node);
+    std::sort(result->ghosts.begin(), result->ghosts.end());
+    result->ghosts.erase(std::unique(result->ghosts.begin(),
+                                     result->ghosts.end()),
+                         result->ghosts.end());
+    IndexSet ghost_dofs(owned.size());
+    for (const Node node : result->ghosts)
+      {
+        ghost_dofs.add_range(node * dim, (node + 1) * dim);
+        result->owner_of_ghost.push_back(
+          std::upper_bound(begins.begin(), begins.end(), node) -
+          begins.begin() - 1);
+      }
+    result->partitioner =
+      std::make_shared<const Utilities::MPI::Partitioner>(owned,
+                                                          ghost_dofs,
+                                                          communicator);
+    result->add_rows(lists, n_own_lists);
+    result->make_exchange();
+    values.assign(result->columns.size() * dim * dim, 0.);
+    pattern = result;
+  }
+
+
+
+  double
+  DistributedMatrix::el(const types::global_dof_index i,
+                        const types::global_dof_index j) const
+  {
+    const unsigned int dim            = pattern->dim;
+    const auto        &p              = *pattern;
+    const Node         ghost_or_owned = j / dim;
+    if ((ghost_or_owned < p.first || ghost_or_owned >= p.first + p.n_owned) &&
+        !std::binary_search(p.ghosts.begin(), p.ghosts.end(), ghost_or_owned))
+      return 0.;
+    const unsigned int row      = p.local_number(i / dim),
+                       column   = p.local_number(j / dim);
+    const bool        is_stored = p.has(row, column);
+    const std::size_t entry =
+      is_stored ? p.find(row, column) : p.find(column, row);
+    if (entry == no_entry)
+      return 0.;
+    return values[entry * n_entries_of_block() + (is_stored ?
+                                                    (i % dim) * dim + j % dim :
+                                                    (j % dim) * dim + i % dim)];
+  }
+
+
+
+  DistributedMatrix::WholeRows
+  DistributedMatrix::whole_rows() const
+  {
+    const unsigned int n = pattern->n_owned;
+    WholeRows          result;
+    result.begin.assign(n + 1, 0);
+    for_each_block([&](const unsigned int i, const unsigned int j, auto) {
+      ++result.begin[i + 1];
+      if (j < n && j != i)
+        ++result.begin[j + 1];
+    });
+    for (unsigned int i = 0; i < n; ++i)
+      result.begin[i + 1] += result.begin[i];
+    result.columns.resize(result.begin[n]);
+    result.blocks.resize(result.begin[n]);
+    // A row has its lower triangle when its turn comes.
+    std::vector<std::size_t> next(result.begin.begin(), result.begin.end() - 1);
+    const auto               append =
+      [&](const unsigned int i, const unsigned int j, const double *block) {
+        result.columns[next[i]]  = j;
+        result.blocks[next[i]++] = block;
+      };
+    for_each_block(
+      [&](const unsigned int i, const unsigned int j, const double *block) {
+        append(i, j, block);
+        if (j < n && j != i)
+          append(j, i, block);
+      });
+    return result;
+  }
+
+
+
+  std::vector<double>
+  DistributedMatrix::at_columns(const double *owned) const
+  {
+    const auto         &partitioner = *pattern->partitioner;
+    const std::size_t   n           = partitioner.locally_owned_size();
+    const std::size_t   n_ghosts    = partitioner.n_ghost_indices();
+    std::vector<double> result(n + n_ghosts);
+    std::copy(owned, owned + n, result.begin());
+    std::vector<double>      to_send(partitioner.n_import_indices());
+    std::vector<MPI_Request> requests;
+    const ArrayView<double>  ghosts(result.data() + n, n_ghosts);
+    partitioner.export_to_ghosted_array_start(
+      0,
+      ArrayView<const double>(result.data(), n),
+      ArrayView<double>(to_send.data(), to_send.size()),
+      ghosts,
+      requests);
+    partitioner.export_to_ghosted_array_finish(ghosts, requests);
+    return result;
+  }
+
+
+
+  void
+  DistributedMatrix::vmult(DistributedVector       &y,
+                           const DistributedVector &x) const
+  {
+    const auto multiply_by = [&](const double *at) {
+      (pattern->dim == 2 ? multiply<2> : multiply<3>)(pattern->begin.data(),
+                                                      pattern->columns.data(),
+                                                      values.data(),
+                                                      pattern->n_owned,
+                                                      at,
+                                                      y.begin());
+    };
+    if (pattern->partitioner->n_mpi_processes() == 1)
+      multiply_by(x.begin());
+    else
+      multiply_by(at_columns(x.begin()).data());
+  }
+
+
+
+  std::vector<DistributedMatrix::Place>
+  DistributedMatrix::blocks_at(const std::vector<bool> &is_chosen) const
+  {
+    std::vector<Place> result;
+    for (unsigned int i = 0; i < pattern->n_owned; ++i)
+      for (std::size_t e = pattern->begin[i]; e < pattern->begin[i + 1]; ++e)
+        if (is_chosen[i] || is_chosen[pattern->columns[e]])
+          result.push_back({i, e});
+    return result;
+  }
+
+
+
+  void
+  DistributedMatrix::vmult(DistributedVector        &y,
+                           const DistributedVector  &x,
+                           const std::vector<Place> &places) const
+  {
+    const unsigned int        dim = pattern->dim;
+    const std::vector<double> at  = at_columns(x.begin());
+    y                             = 0.;
+    for (const auto &[i, entry] : places)
+      {
+        const unsigned int j     = pattern->columns[entry];
+        const double      *block = &values[entry * n_entries_of_block()];
+        double            *to    = y.begin() + i * dim;
+        (dim == 2 ? add_product<2> : add_product<3>)(block, &at[j * dim], to);
+        if (j != i && j < pattern->n_owned)
+          (dim == 2 ? add_transposed_product<2> :
+                      add_transposed_product<3>)(block,
+                                                 &at[i * dim],
+                                                 y.begin() + j * dim);
+      }
+  }
+
+
+
+  void
+  DistributedMatrix::add(const std::vector<types::global_dof_index> &dofs,
+                         const FullMatrix<double>                   &matrix)
+  {
+    const unsigned int        dim = pattern->dim;
+    std::vector<unsigned int> numbers;
+    for (std::size_t a = 0; a < dofs.size(); a += dim)
+      numbers.push_back(pattern->local_number(dofs[a] / dim));
+    for (unsigned int a = 0; a < numbers.size(); ++a)
+      for (unsigned int b = 0; b < numbers.size(); ++b)
+        {
+          if (!pattern->has(numbers[a], numbers[b]))
+            continue;
+          const std::size_t entry = pattern->find(numbers[a], numbers[b]);
+          for (unsigned int c = 0; c < dim; ++c)
+            for (unsigned int d = 0; d < dim; ++d)
+              {
+                const double value = matrix(a * dim + c, b * dim + d);
+                if (entry != no_entry)
+                  values[entry * n_entries_of_block() + c * dim + d] += value;
+                else
+                  Assert(value == 0., ExcInternalError());
+              }
+        }
+  }
+
+
+
+  void
+  DistributedMatrix::compress()
+  {
+    if (pattern->partitioner->n_mpi_processes() == 1)
+      return;
+    const std::size_t                           size = n_entries_of_block();
+    std::map<unsigned int, std::vector<double>> messages;
+    for (const auto &[rank, range] : pattern->to_send)
+      messages[rank].assign(values.begin() + range.first * size,
+                            values.begin() + range.second * size);
+    std::fill(values.begin() + pattern->begin[pattern->n_owned] * size,
+              values.end(),
+              0.);
+    for (const auto &[rank, received] :
+         Utilities::MPI::some_to_some(get_mpi_communicator(), messages))
+      {
+        const std::vector<std::size_t> &entries = pattern->to_receive.at(rank);
+        for (std::size_t k = 0; k < received.size(); ++k)
+          values[entries[k / size] * size + k % size] += received[k];
+      }
+  }
+} // namespace Viscoplastic

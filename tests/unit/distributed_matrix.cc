@@ -1,0 +1,158 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+
+// The matrix in blocks of nodes: what ranks add to rows of each other, and
+// products with its upper triangle.
+
+#include <deal.II/base/mpi.h>
+#include <deal.II/lac/vector.h>
+
+#include "body.h"
+#include <viscoplastic_contact/base/linear_algebra.h>
+
+#include <set>
+
+namespace
+{
+  using namespace dealii;
+  using namespace Viscoplastic;
+  using namespace Viscoplastic::Testing;
+
+  template <typename Dimension>
+  class DistributedMatrixTest : public testing::Test
+  {};
+  TYPED_TEST_SUITE(DistributedMatrixTest, Dimensions, );
+
+
+
+  /// The sum of small matrices for lists of nodes, of which rank after rank has
+  /// one, whoever owns the nodes; and the same matrix as a whole.
+  template <int dim>
+  struct Sum
+  {
+    static constexpr unsigned int n_nodes = 23, n = n_nodes * dim;
+
+    Sum()
+      : rank(Utilities::MPI::this_mpi_process(MPI_COMM_WORLD))
+      , n_ranks(Utilities::MPI::n_mpi_processes(MPI_COMM_WORLD))
+      , owned(n)
+      , expected(n, n)
+    {
+      owned.add_range(n_nodes * rank / n_ranks * dim,
+                      n_nodes * (rank + 1) / n_ranks * dim);
+      DistributedMatrix::NodeLists lists;
+      for (unsigned int l = rank; l < n_nodes; l += n_ranks)
+        {
+          const std::set<unsigned int> nodes = list(l);
+          lists.nodes.insert(lists.nodes.end(), nodes.begin(), nodes.end());
+          lists.begin.push_back(lists.nodes.size());
+        }
+      matrix.reinit(owned, dim, lists, MPI_COMM_WORLD);
+      for (unsigned int l = 0; l < n_nodes; ++l)
+        {
+          std::vector<types::global_dof_index> dofs;
+          for (const unsigned int node : list(l))
+            for (unsigned int d = 0; d < dim; ++d)
+              dofs.push_back(node * dim + d);
+          FullMatrix<double> values(dofs.size(), dofs.size());
+          for (unsigned int i = 0; i < dofs.size(); ++i)
+            for (unsigned int j = 0; j < dofs.size(); ++j)
+              values(i, j) = std::sin(l + i + j) + std::cos(i * j);
+          for (unsigned int i = 0; i < dofs.size(); ++i)
+            for (unsigned int j = 0; j < dofs.size(); ++j)
+              expected(dofs[i], dofs[j]) += values(i, j);
+          if (l % n_ranks == rank)
+            matrix.add(dofs, values);
+        }
+      matrix.compress();
+    }
+
+    static std::set<unsigned int>
+    list(const unsigned int l)
+    {
+      return {l, (l + 1) % n_nodes, (5 * l + 3) % n_nodes};
+    }
+
+    /// The largest difference to products with @p other.
+    double
+    distance(const FullMatrix<double>                    &other,
+             const std::vector<DistributedMatrix::Place> *places) const
+    {
+      DistributedVector x(owned, MPI_COMM_WORLD), y(x);
+      Vector<double>    all(n), product(n);
+      for (unsigned int i = 0; i < n; ++i)
+        all[i] = std::sin(3. * i);
+      other.vmult(product, all);
+      for (const auto i : owned)
+        x.begin()[owned.index_within_set(i)] = all[i];
+      y = 7.;
+      if (places != nullptr)
+        matrix.vmult(y, x, *places);
+      else
+        matrix.vmult(y, x);
+      double result = 0.;
+      for (const auto i : owned)
+        result =
+          std::max(result,
+                   std::abs(y.begin()[owned.index_within_set(i)] - product[i]));
+      return Utilities::MPI::max(result, MPI_COMM_WORLD);
+    }
+
+    const unsigned int rank, n_ranks;
+    IndexSet           owned;
+    DistributedMatrix  matrix;
+    FullMatrix<double> expected;
+  };
+
+
+
+  TYPED_TEST(DistributedMatrixTest, HasWhatAllRanksAdd)
+  {
+    constexpr int  dim = TypeParam::value;
+    const Sum<dim> sum;
+    for (const auto i : sum.owned)
+      for (unsigned int j = 0; j < sum.n; ++j)
+        EXPECT_NEAR(sum.matrix.el(i, j), sum.expected(i, j), 1e-14)
+          << i << ' ' << j;
+    const auto rows   = sum.matrix.whole_rows();
+    double     square = 0.;
+    for (unsigned int i = 0; i < sum.matrix.n_rows(); ++i)
+      {
+        EXPECT_EQ(sum.matrix.diagonal(i * dim + 1),
+                  sum.matrix.el(sum.matrix.global_node(i) * dim + 1,
+                                sum.matrix.global_node(i) * dim + 1));
+        for (std::size_t e = rows.begin[i]; e < rows.begin[i + 1]; ++e)
+          {
+            const unsigned int j = rows.columns[e];
+            for (unsigned int c = 0; c < dim; ++c)
+              for (unsigned int d = 0; d < dim; ++d)
+                square += Utilities::fixed_power<2>(
+                  rows.blocks[e][j < i ? d * dim + c : c * dim + d] -
+                  sum.expected(sum.matrix.global_node(i) * dim + c,
+                               sum.matrix.global_node(j) * dim + d));
+          }
+      }
+    EXPECT_LT(square, 1e-24);
+  }
+
+
+
+  TYPED_TEST(DistributedMatrixTest, MultipliesBySomeOrAllBlocks)
+  {
+    constexpr int  dim = TypeParam::value;
+    const Sum<dim> sum;
+    EXPECT_LT(sum.distance(sum.expected, nullptr), 1e-13);
+    const auto is_chosen = [](const unsigned int node) {
+      return node % 4 == 1;
+    };
+    std::vector<bool> chosen;
+    for (unsigned int i = 0; i < sum.matrix.n_columns(); ++i)
+      chosen.push_back(is_chosen(sum.matrix.global_node(i)));
+    FullMatrix<double> part(sum.expected);
+    for (unsigned int i = 0; i < sum.n; ++i)
+      for (unsigned int j = 0; j < sum.n; ++j)
+        if (!is_chosen(i / dim) && !is_chosen(j / dim))
+          part(i, j) = 0.;
+    const auto places = sum.matrix.blocks_at(chosen);
+    EXPECT_LT(sum.distance(part, &places), 1e-13);
+  }
+} // namespace

@@ -148,13 +148,4 @@ namespace Viscoplastic
     const SolverParameters &solver;
     const double            algebraic_fraction;
   };
-
-
-  /// Let the carried error of z at the end of a step relax, with the carried
-  /// error of u that it makes. Collective.
-  template <int dim>
-  void
-  relax_carried_error(const FlowLaws<dim> &laws,
-                      const State<dim>    &old,
-                      EvaluatedState<dim> &end);
 } // namespace Viscoplastic

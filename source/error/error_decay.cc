@@ -1,0 +1,137 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <viscoplastic_contact/error/error_decay.h>
+
+namespace Viscoplastic
+{
+  namespace
+  {
+    /// k dG/deps E^-1 of linear laws that depend on the strain. Where the
+    /// strains make up for an error of z, which makes no stress, a step leaves
+    /// (1 + k dG/deps E^-1)^-1 of it. None of others, whose strain stays.
+    std::optional<SymmetricTensor<4, 3>>
+    growth_with_strain(const ViscoplasticLaw &law,
+                       const double           k,
+                       const Stiffness       &stiffness,
+                       const LawPoint        &point)
+    {
+      if (!law.has_constant_tangents() || law.radial_flow(0., point))
+        return {};
+      return k * law.tangents({}, {}, stiffness, point).strain *
+             invert(stiffness.tensor());
+    }
+  } // namespace
+
+
+
+  template <int dim>
+  void
+  ErrorDecay<dim>::enter(const std::size_t c)
+  {
+    const ViscoplasticLaw *last_law       = law;
+    const Stiffness       *last_stiffness = stiffness;
+    law                                   = now.law(c);
+    stiffness                             = &stress_space.moduli(c);
+    // The same in all cells of most bodies.
+    if (c > 0 && law == last_law && stiffness == last_stiffness &&
+        !(law && now.varies_in_space(c)))
+      return;
+    growth = law ? growth_with_strain(*law, k, *stiffness, now.point(c, 0)) :
+                   std::nullopt;
+    if (growth)
+      fading = invert(identity_tensor<3>() + *growth);
+    is_uniform = law && law->has_constant_tangents() && !now.varies_in_space(c);
+    relaxation = {};
+    is_known   = law == nullptr;
+    cell       = c;
+  }
+
+
+
+  template <int dim>
+  const ErrorRelaxation &
+  ErrorDecay<dim>::relaxation_at(const SymmetricTensor<2, 3> &stress,
+                                 const SymmetricTensor<2, 3> &strain,
+                                 const LawPoint              &point)
+  {
+    if (!is_known)
+      relaxation =
+        is_uniform ?
+          error_relaxation(*law, {}, {}, k, *stiffness, now.point(cell, 0)) :
+          error_relaxation(*law, stress, strain, k, *stiffness, point);
+    is_known |= is_uniform;
+    return relaxation;
+  }
+
+
+
+  template <int dim>
+  void
+  relax_carried_error(const FlowLaws<dim> &laws,
+                      const State<dim>    &old,
+                      EvaluatedState<dim> &end)
+  {
+    State<dim>                        &state = end.state;
+    const StressSpace<dim>            &space = laws.stress_space;
+    ErrorDecay<dim>                    decay(laws, old, state);
+    std::vector<SymmetricTensor<2, 3>> strains(space.n_samples),
+      errors(space.n_samples);
+    // Of what the step adds, of D, of what is kept and regained of that.
+    std::vector<double> sums(4, 0.);
+    std::size_t         i = 0;
+    for (std::size_t c = 0; c < space.n_cells(); ++c)
+      {
+        decay.enter(c);
+        if (decay.law == nullptr)
+          {
+            i += space.n_samples;
+            continue;
+          }
+        space.strains(c, state.carried_error_of_u.begin(), errors.data());
+        if (!decay.is_uniform)
+          space.strains(c, state.u.begin(), strains.data());
+        for (unsigned int s = 0; s < space.n_samples; ++s, ++i)
+          {
+            const Stiffness       &stiffness = *decay.stiffness;
+            const ErrorRelaxation &relaxation =
+              decay.relaxation_at(stiffness.stress(strains[s]) + state.z[i],
+                                  decay.now.mechanical(strains[s], c, s),
+                                  decay.now.point(c, s));
+            const auto add_square = [&](const unsigned int           sum,
+                                        const SymmetricTensor<2, 3> &value) {
+              sums[sum] +=
+                space.weight(c, s) * stiffness.complementary_square(value);
+            };
+            SymmetricTensor<2, 3>       &error = state.carried_error[i];
+            const SymmetricTensor<2, 3> &moves = state.time_error[i];
+            add_square(0, relaxation * (error - old.carried_error[i]));
+            add_square(1, moves);
+            add_square(2, relaxation * moves);
+            if (decay.growth)
+              add_square(3, relaxation * (*decay.growth * moves));
+            // The stress of the error relaxes as if the strain stayed, and what
+            // strains then make up for fades as if the stress did.
+            const SymmetricTensor<2, 3> elastic = stiffness.stress(errors[s]),
+                                        stress = relaxation * (error + elastic);
+            error                              = stress - elastic;
+            if (decay.growth)
+              error = decay.fading * (error + *decay.growth * stress);
+          }
+      }
+    Utilities::MPI::sum(sums, space.space.communicator, sums);
+    ErrorEstimate &estimate = end.errors;
+    const auto     share    = [&](const double part) {
+      return std::sqrt(part / sums[1]);
+    };
+    if (laws.stress_space.space.scene.quantity->is_force())
+      {
+        estimate.remembered_indicator = std::sqrt(sums[0]);
+        estimate.remembered_share     = sums[1] > 0. ? share(sums[2]) : 1.;
+        estimate.remembered_gain      = sums[1] > 0. ? share(sums[3]) : 0.;
+      }
+  }
+
+
+
+  VISCOPLASTIC_INSTANTIATE_CLASS(ErrorDecay);
+  VISCOPLASTIC_INSTANTIATE(relax_carried_error);
+} // namespace Viscoplastic

@@ -18,8 +18,8 @@ namespace Viscoplastic
     , dof_handler(cells.stress_space.space.dof_handler.get_triangulation())
   {
     const AdmissibleSpace<dim> &space = cells.stress_space.space;
-    // In an order that does not depend on how the mesh came about: hanging nodes
-    // sum their parents in it.
+    // In an order that does not depend on how the mesh came about: hanging
+    // nodes sum their parents in it.
     distribute_nodes(fe, dof_handler);
     IndexSet relevant;
     DoFTools::extract_locally_relevant_dofs(dof_handler, relevant);

@@ -119,8 +119,8 @@ namespace
                                              expected.as_they_come,
                                            MPI_COMM_WORLD));
     // Few cells in two dimensions happen to be rounded alike.
-    if (dim == 3)
-      EXPECT_NE(after_detours.sum_as_they_come, expected.sum_as_they_come);
+    EXPECT_TRUE(dim == 2 ||
+                after_detours.sum_as_they_come != expected.sum_as_they_come);
 
     // As in a restart.
     HistoricBody<dim> restored;

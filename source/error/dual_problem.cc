@@ -3,6 +3,7 @@
 #include <deal.II/dofs/dof_tools.h>
 
 #include <viscoplastic_contact/contact/contact_points.h>
+#include <viscoplastic_contact/discretization/initial_state.h>
 #include <viscoplastic_contact/error/dual_problem.h>
 
 namespace Viscoplastic

@@ -13,7 +13,7 @@ namespace Viscoplastic
                     const ContactState  &state,
                     const bool           from_kink)
   {
-    // What may begin, cover all points, and end: slip, and contact.
+    // Whether slip or contact begins, comes to cover all points, or ends.
     const auto has_event_of = [&](double n_points, double n_old, double n_new) {
       n_points          = face.sum(n_points);
       n_old             = face.sum(n_old);
@@ -40,8 +40,8 @@ namespace Viscoplastic
           ++n_points;
           n_old += slipped;
           n_new += slips;
-          // Multipliers are along the slip. A direction that turns by less
-          // than a right angle in 3D does not turn back.
+          // Multipliers are parallel to the slip. In 3D a turn by less than a
+          // right angle is no reversal.
           turns_back |= slipped && slips && !from_kink &&
                         old_state.multiplier[p] * state.multiplier[p] < 0.;
         }
@@ -78,7 +78,7 @@ namespace Viscoplastic
         const Tensor<1, 2> direction = now / force,
                            turn      = direction - old / stable_norm(old);
         const double slip            = stable_norm(slips[p]);
-        // In the plane it turns back only, through rest.
+        // In 2D slip can only reverse, and does so through rest.
         if (face.points[p].n_tangents > 1)
           {
             defects.work += force * slip * std::min(0.5 * turn * turn, 1.);
@@ -93,7 +93,7 @@ namespace Viscoplastic
             power += force * rate;
             old_power += force * old_rate;
           }
-        // What is at rest from the beginning may slip by rounding.
+        // The slip of a point at rest may be rounding.
         if (last < 0. && rate > 1e-6 * old_rate)
           {
             const double missed = k * last * last / (-4. * slope);

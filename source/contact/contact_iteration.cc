@@ -14,22 +14,24 @@ namespace Viscoplastic
   {
     /// The relative tolerance of linear solves as long as the sets change.
     constexpr double loose_tolerance = 0.05;
-    /// The same where bounds follow the pressure. The preconditioner is that of
-    /// the symmetric part, so each power of ten takes more iterations, and an
-    /// iteration of GMRES more than one of conjugate gradients.
+    /// The same where bounds follow the pressure: looser, since the
+    /// preconditioner is that of the symmetric part, so that digits take more
+    /// iterations, and GMRES costs more than conjugate gradients.
     constexpr double loose_tolerance_of_law = 0.2;
-    /// A correction that stops at reversing slips is taken as it is if it goes
-    /// that far; otherwise something better is tried.
+    /// A correction that stops at reversing slips is taken if the line search
+    /// goes this far along it; otherwise others are tried.
     constexpr double least_limited_step = 0.5;
-    /// The least decrease of J in a correction, relative to the duality gap.
+    /// If a correction lowers J by less than this part of the duality gap, the
+    /// bulk follows the face.
     constexpr double least_descent = 0.1;
-    /// So many corrections may begin with nodes where pieces meet that have not
-    /// settled: that finds sets; later it takes the node from a solution.
+    /// For this many corrections, sweeps move nodes where pieces meet even if
+    /// their laws have not settled: that finds sets, but later leads away from
+    /// a solution.
     constexpr unsigned int unsettled_corrections = 5;
 
 
 
-    /// Gauss-Seidel; more sweeps when the corrections do not finish.
+    /// The number of Gauss-Seidel sweeps: more if corrections do not converge.
     unsigned int
     sweeps_of_iteration(const unsigned int iteration)
     {
@@ -38,8 +40,7 @@ namespace Viscoplastic
 
 
 
-    /// Update slips from the increment; a slipping point that does not move
-    /// sticks.
+    /// Update slips from the increment. Slipping points that do not move stick.
     void
     update_slips(const ContactLayout  &face,
                  const Vector<double> &x,
@@ -62,9 +63,9 @@ namespace Viscoplastic
 
 
 
-    /// Bring points to rest whose slip is nothing but rounding, an error of the
-    /// size of @p rounding in the energy norm: its direction means nothing, but
-    /// would be that of a force of the size of the bound. @p change takes part.
+    /// Bring points to rest whose slip is at most @p rounding in the energy
+    /// norm, since its meaningless direction would be that of a force of the
+    /// size of the bound. Changes @p x and @p change alike.
     void
     stop_rounding(const ContactLayout             &face,
                   const std::vector<Tensor<2, 3>> &diagonal,
@@ -86,7 +87,7 @@ namespace Viscoplastic
               Utilities::fixed_power<2>(rounding))
             continue;
           state.sticks[p] = true;
-          // Where pieces meet, others may hold the node just there.
+          // Where pieces meet, other points may hold the node.
           if (!face.has_plain_friction(node))
             continue;
           face.set_node_values(here - part, node, x);
@@ -152,9 +153,9 @@ namespace Viscoplastic
         correct();
         const double energy_change = search();
         ++report.iterations;
-        // Gauss-Seidel with the bulk at rest and corrections that a kink of J
-        // stops may jam. Then the bulk follows the face: with (1) a descent
-        // over two blocks, which converges since only the face has kinks.
+        // Gauss-Seidel with the bulk at rest and corrections that stop at kinks
+        // of J may stall. With relax(), follow() makes a block descent over
+        // face and bulk, which converges since only the face has kinks.
         if (!(-energy_change > least_descent * report.duality_gap))
           follow();
       }
@@ -172,7 +173,7 @@ namespace Viscoplastic
         report.bound_iterations = bounds->n_moves();
         report.contraction      = bounds->largest_loss();
         report.doubt            = bounds->doubt();
-        // With the sets of the last step it has been said there.
+        // Without corrections, an earlier solve has examined the same sets.
         if (report.doubt.empty() && report.iterations > 0 &&
             bounds->may_be_singular() && bulk.has_negative_determinant())
           report.doubt = "a pivot of the slipping points has changed its sign";
@@ -221,7 +222,7 @@ namespace Viscoplastic
         for (unsigned int s = stages.size(); s-- > 0;)
           relax_stage(s, true);
       }
-    // rounding_error is a hundred units of rounding.
+    // rounding_error is a hundred times the rounding of a solution.
     stop_rounding(
       face, diagonal, 0.01 * bulk.scale.rounding_error, x, change, state);
     bulk.move_face(change);
@@ -247,9 +248,9 @@ namespace Viscoplastic
     const Tensor<1, 3>          f        = r + diagonal[node] * old;
     const Tensor<2, 3>         &inverse  = inverse_diagonal[node];
     std::optional<Tensor<1, 3>> now;
-    // Where one of two pieces gives way, what either may hold drifts
-    // with the law of the node alone; it finds the sets, and sweeps between
-    // with the bounds at hand leave the rest to corrections.
+    // Where pieces meet and one is compliant, what each piece holds drifts in
+    // sweeps with Coulomb's law at the node, which serve to find the sets.
+    // Every other sweep has fixed bounds and leaves the rest to corrections.
     const bool bounds_rest =
       report.iterations >= unsettled_corrections &&
       report.iterations % 2 == 1 && !face.has_plain_friction(node) &&
@@ -268,8 +269,8 @@ namespace Viscoplastic
     if (!now)
       return;
     const Tensor<1, 3> step = *now - old;
-    // What rounding makes is no step: the bulk would have to follow it. Deep
-    // penetration of soft ground rounds the motions that it is the sum of.
+    // Skip steps that are rounding, which the bulk would have to follow.
+    // Rounding is relative to the penetration, too, if that is deep.
     double size = old.norm();
     for (unsigned int p = face.first_point[node];
          p < face.first_point[node + 1];
@@ -287,9 +288,8 @@ namespace Viscoplastic
   void
   ContactIteration::correct()
   {
-    // Loosely while the sets still change, and as far as needed once they do
-    // not.
-    // From zero, the first solution sets the scale.
+    // Loosely while the sets still change, as far as needed once they do not.
+    // With a zero start, errors are relative to the first solution.
     const double loose =
       bounds && bounds->follow() ? loose_tolerance_of_law : loose_tolerance;
     double      reduction = same_sets ?
@@ -326,16 +326,16 @@ namespace Viscoplastic
                                                x,
                                                state))
       {
-        // When a whole zone reverses, the rest of the body must adapt to its
-        // stop before J descends far.
+        // When a whole zone reverses, J descends far only after the rest of the
+        // body has adapted to the zone at rest.
         w      = rest->correction;
         result = rest->search;
         report.linear_iterations += rest->linear_iterations;
       }
     else
       {
-        // The correction as it is descends, because it solves a positive
-        // definite system with the gradient of J; obstacles may end it.
+        // The unmodified correction descends, since it solves a positive
+        // definite system with the gradient of J; obstacles may limit the step.
         const KinkStep past = step_past_obstacles(bulk,
                                                   face,
                                                   inverse_diagonal,

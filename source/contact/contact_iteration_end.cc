@@ -13,25 +13,24 @@ namespace Viscoplastic
 {
   namespace
   {
-    /// What has come to rest may be rounding of the residual or some times as
-    /// much, since rounding of each term counts. More than this part of the
-    /// solution is refused.
+    /// A stalled error up to this many times the rounding of the residual is
+    /// rounding. If that exceeds largest_rounding times the solution, it is
+    /// refused.
     constexpr double rounding_margin = 10., largest_rounding = 1e-3;
-    /// An error that is this part of its tolerance by the estimate of a
-    /// preconditioner is below the tolerance by any: that takes one whose
-    /// condition number is less than 1e6.
+    /// An error estimated by a preconditioner below this part of the tolerance
+    /// needs no confirmation, if the preconditioned condition number is below
+    /// 1e6.
     constexpr double beyond_doubt = 1e-3;
-    /// An error that is so many times its tolerance on the truncated space is
-    /// above it.
+    /// If the error on the truncated space alone is more than this many times
+    /// the tolerance, the full norm is not computed.
     constexpr double by_far = 10.;
-    /// Estimates found too low are not taken for more than so many times too
-    /// low: others will be less so.
+    /// A limit for `misjudged`, since other estimates will be less wrong.
     constexpr double largest_misjudgment = 10.;
 
 
 
-    /// Whether all points with friction do the same, stick or slip, and all
-    /// obstacles are touched or none. Collective.
+    /// Whether all friction points have one state, and all obstacles.
+    /// Collective.
     bool
     all_do_the_same(const ContactLayout &face, const ContactState &state)
     {
@@ -60,15 +59,14 @@ namespace Viscoplastic
     truncation          = make_truncation(face, state, inverse_diagonal);
     if (follow)
       law->tilt(face, state, inverse_diagonal, truncation);
-    // A face that sticks or slips altogether, and whose slip does not turn,
-    // makes a linear problem: unless the first sweep has found otherwise, it
-    // takes no more than a plain solve.
+    // The problem is linear if all points stick, or all slip without turning:
+    // one accurate solve is enough unless the first sweep has changed the sets.
     same_sets =
       report.iterations == 0 ?
         !face.any(state.sticks != first_sets) && all_do_the_same(face, state) &&
           !truncation.has_springs(face) :
         truncation.blocks_as(last, face) &&
-          // Obstacles that give way do not block.
+          // Projectors do not show the state of compliant obstacles.
           !(face.has_obstacles && face.any(state.sticks != last_sets));
     if (face.has_obstacles)
       last_sets = state.sticks;
@@ -78,7 +76,7 @@ namespace Viscoplastic
     size = std::max(bulk.size(), bulk.scale.rounding_error / tolerance);
     double estimate = 0.;
     error           = 0.;
-    // As a rule it is not solved by far.
+    // Try the cheaper norm first: mostly the error is still large.
     if (!bounds && !bulk.is_exact && !face.any(!certificate.replaced.empty()))
       {
         estimate = bulk.truncated_dual_norm(force);
@@ -91,7 +89,7 @@ namespace Viscoplastic
       }
     if (error <= tolerance * size && error > beyond_doubt * tolerance * size)
       {
-        // Above this, the bound is above the tolerance.
+        // If the norm is above this, the error is above the tolerance.
         const double limit = tolerance * size /
                              (bounds ? bounds->error_with_bounds(1.) -
                                          bounds->error_with_bounds(0.) :
@@ -115,23 +113,22 @@ namespace Viscoplastic
     best_error = std::min(best_error, report.relative_error);
     if (report.iterations == 0 && size > 0.)
       first_ratio = error / (tolerance * size);
-    // Not that of the solution where it comes to rest: in flat cells that would
-    // take the forces of a whole edge for rounding.
+    // Copied before is_rounding() raises it: with flat cells the forces of a
+    // whole edge would then count as rounding.
     const double blur = bulk.scale.rounding_error;
     if (error > tolerance * size && !is_rounding(certificate))
       return false;
     report.error = error;
     for (const auto &[point, multiplier] : certificate.replaced)
       state.multiplier[point] = multiplier;
-    // What presses by rounding does not touch: Coulomb's law would make bounds
-    // of it.
+    // Remove pressures that are rounding, from which bounds would follow.
     for (unsigned int p = 0; p < face.points.size(); ++p)
       if (face.points[p].is_obstacle)
         {
           const ContactLayout::Point &point = face.points[p];
           const double                stiffness =
             point.map[0] * (diagonal[point.node] * point.map[0]);
-          // Of soft ground, rounding of displacements makes less.
+          // On a soft foundation, rounding of displacements makes less force.
           const double share =
             point.gives_way() ?
               std::min(1.,
@@ -180,7 +177,7 @@ namespace Viscoplastic
       give_up();
     if (error > rounding_margin * rounding)
       return false;
-    // Data are no better known than that.
+    // The residual is not known more accurately than that.
     error                     = std::max(error, rounding);
     report.relative_error     = error / size;
     bulk.scale.rounding_error = std::max(bulk.scale.rounding_error, error);
@@ -198,7 +195,7 @@ namespace Viscoplastic
             << "; ";
     if (bounds)
       AssertThrow(false, NoCoulombSolution(message.str() + bounds->failure()));
-    // Rounding of displacements makes forces of all sizes of it.
+    // Such stiffness turns rounding of displacements into any force.
     constexpr double beyond_rounding = 1e13;
     double           stiffest        = 0.;
     for (unsigned int p = 0; p < face.points.size(); ++p)
@@ -216,7 +213,7 @@ namespace Viscoplastic
                report.iterations >= last_gain + stalled_after ?
                  bulk.rounding_of_residual() / size :
                  0.;
-             // Exact solvers see it magnified by stiffness that differs.
+             // In exact solvers, strongly varying stiffness magnifies it.
              best_error < (bulk.is_exact ? 1e10 : 1e3) * rounding)
       {
         message << "it has come to rest there, and rounding alone makes "

@@ -44,8 +44,8 @@ namespace Viscoplastic
 
 
 
-    /// The nearest admissible multiplier: in the ball of friction, pressure at
-    /// an obstacle.
+    /// The nearest admissible multiplier: in the ball of a friction point,
+    /// nonnegative at an obstacle.
     Tensor<1, 2>
     clip(const ContactLayout::Point &point,
          const Tensor<1, 2>         &multiplier,
@@ -70,7 +70,7 @@ namespace Viscoplastic
     const Tensor<1, 2> stick =
       solve_block(flexibility, 0., free_slip, n_tangents);
     const double stick_size = stable_norm(stick);
-    // A zero bound is no friction: the point moves, even if by nothing.
+    // Without friction a point counts as slipping, even if it does not move.
     if (bound == 0.)
       return {Tensor<1, 2>(), false};
     if (!(stick_size > bound * (1. + 1e-14)))
@@ -82,16 +82,14 @@ namespace Viscoplastic
         return {multiplier, false};
       }
 
-    // A force so small has no influence on the slip, but its squares would
-    // leave the range of numbers below.
+    // A force too small to influence the slip, whose square would underflow.
     if (bound < 1e-100 * stick_size)
       return {free_slip * (bound / stable_norm(free_slip)), false};
 
     // |(C + m I)^{-1} q| = rho for m = |s|/rho > 0: Newton's method on the
     // reciprocal of the norm is monotone from m = 0 (More, Sorensen). It takes
-    // some 20 iterations; for flexibilities of condition 1e8 and more it stalls
-    // at rounding times the condition, which is all that is known of them. The
-    // length of the result is exact.
+    // some 20 iterations; for condition numbers of 1e8 and more it stalls at
+    // rounding times these. The length of the result is exact.
     double       m          = 0.;
     Tensor<1, 2> multiplier = stick;
     for (unsigned int iteration = 0; iteration < 100; ++iteration)
@@ -115,8 +113,8 @@ namespace Viscoplastic
 
   namespace
   {
-    /// The same for an obstacle that would be passed by @p free_w: the smallest
-    /// multiplier that stops it there, or the force at which compliance does.
+    /// The same for an obstacle that the free node passes by @p free_w: the
+    /// multiplier that stops it there, or the force of a compliant obstacle.
     PointSolution
     solve_obstacle(const ContactLayout::Point &obstacle,
                    const double                flexibility,
@@ -165,13 +163,13 @@ namespace Viscoplastic
 
   namespace
   {
-    /// Minimize J over x = start + y, with y in the range of the symmetric @p
-    /// flexibility, its response to forces: by duality, block by block over the
-    /// points from @p begin to @p end, which may be obstacles. Exact at once
-    /// for a single point; returns whether the sweeps have ended. They hardly
-    /// move where points pull against each other along one direction: what they
-    /// leave then is a start for minimize_at_node(), or for the next sweep over
-    /// the face, and counts as an error of its certificate.
+    /// Minimize J over @p x = @p start + y, with y in the range of the
+    /// symmetric @p flexibility, by duality: in sweeps over the points (also
+    /// obstacles) from @p begin to @p end, exact for a single point. Returns
+    /// whether they converge, which they hardly do where points act against
+    /// each other along one direction: x is then a start for minimize_at_node()
+    /// or for the next sweep over the face, and its error is part of the
+    /// certificate.
     bool
     relax_points(const ContactLayout &face,
                  const unsigned int   begin,
@@ -229,8 +227,8 @@ namespace Viscoplastic
     if (end - obstacle == 1 && (is_plain || begin == obstacle) &&
         !face.points[obstacle].gives_way())
       {
-        // J is convex, so that the obstacle is met if the node alone would pass
-        // it, and has no influence otherwise.
+        // J is convex, so the obstacle is touched if the minimum without it is
+        // beyond it, and has no influence otherwise.
         const ContactLayout::Point &point = face.points[obstacle];
         relax_points(
           face, begin, obstacle, inverse_diagonal, nothing, force, state, x);
@@ -238,7 +236,7 @@ namespace Viscoplastic
         state.sticks[obstacle]     = slip(point, x)[0] > state.bound[obstacle];
         if (state.sticks[obstacle])
           {
-            // On the plane of the obstacle.
+            // Minimize on the plane of the obstacle.
             const Tensor<1, 3> response = inverse_diagonal * point.map[0];
             const double       size     = point.map[0] * response;
             distance                    = state.bound[obstacle];
@@ -267,8 +265,8 @@ namespace Viscoplastic
           if (const auto minimum = minimize_at_node(
                 face, node, invert(inverse_diagonal), force, state))
             x = *minimum;
-        // The penetration of what hardly gives way is known better from its
-        // force.
+        // The penetration of a stiff compliant obstacle is more accurate if it
+        // is computed from its force.
         if (end - obstacle == 1 && (is_plain || begin == obstacle) &&
             state.multiplier[obstacle][0] > 0.)
           {
@@ -281,8 +279,8 @@ namespace Viscoplastic
           }
       }
 
-    // A node whose points hold all its components goes with the foundation,
-    // without rounding: where that is at rest, it does not move at all.
+    // A node all of whose components are held moves with the foundation,
+    // without rounding: not at all if the foundation is at rest.
     if (is_plain && state.sticks[begin] &&
         face.points[begin].n_tangents + (normal.norm() > 0. ? 1 : 0) ==
           face.n_node_dofs(node))
@@ -308,7 +306,8 @@ namespace Viscoplastic
         Tensor<1, 3>       missing = total;
         if (end - begin == 1 ||
             (end - begin == 2 && face.has_plain_friction(node)))
-          // Points of orthogonal rows, obstacles first: the residual, clipped.
+          // The rows of the points are orthogonal: clip the residual, at
+          // obstacles first, since bounds depend on their pressures.
           for (unsigned int p = end; p-- > begin;)
             {
               const ContactLayout::Point &point      = face.points[p];
@@ -332,10 +331,10 @@ namespace Viscoplastic
 
   namespace
   {
-    /// What is missing between the residual and the force of an obstacle that
-    /// gives way is shared between that force, at the price of a defect of
-    /// complementarity, and the residual: as springs in series share a force,
-    /// which is where the sum of both is least.
+    /// Divide the misfit between the residual and the force of a compliant
+    /// obstacle in the ratio of stiffnesses: one part is added to the force, at
+    /// the price of a complementarity defect, the other one stays in the
+    /// residual. This minimizes the sum of both errors.
     void
     share_misfit(const ContactLayout             &face,
                  const Vector<double>            &residual,
@@ -382,7 +381,7 @@ namespace Viscoplastic
   {
     Certificate result;
     result.force = force;
-    // The force of a foundation that hardly gives way is blurred, too.
+    // Rounding blurs the force of a stiff compliant obstacle, too.
     if (face.has_obstacles)
       for (unsigned int p = 0; p < face.points.size(); ++p)
         share_misfit(face, residual, diagonal, state, p, result);
@@ -414,13 +413,13 @@ namespace Viscoplastic
             const Tensor<1, 2> direction = state.slip[p] / size,
                                across =
                                  missing - (missing * direction) * direction;
-            // The body itself needs little of what these forces are.
+            // Only where contact forces far exceed those of the body.
             if (bound < 10. * face.node_values(residual, point.node).norm() ||
                 across.norm() > 1e-9 * bound || stiffness * size >= bound)
               continue;
             multiplier = state.multiplier[p] + across;
             multiplier *= bound / multiplier.norm();
-            // 1 - cos of the turn
+            // bound |s| (1 - cos theta), theta = |across| / bound.
             result.defect += 0.51 * size * across.norm_square() / bound;
           }
         result.replaced.emplace_back(p, multiplier);

@@ -18,7 +18,7 @@ namespace Viscoplastic
     Vector<double>         w(face.n_dofs());
     unsigned int           iterations = 0;
     solve.set_truncation(truncation, is_kept);
-    // Where these are not enough, the line search takes what they have come to.
+    // If these are not enough, the caller takes what they have reached.
     for (unsigned int n = 0; n < max_corrections; ++n)
       {
         iterations += solve.correct(force, reduction, w);
@@ -27,8 +27,8 @@ namespace Viscoplastic
         if (solve.is_exact ||
             std::sqrt(std::max(0., curvature)) <= enough * solve.energy_norm())
           break;
-        // What gives way presses more or less now. (Of motions that tilt, the
-        // springs of w are not those of the correction.)
+        // The forces of springs have changed. (Not known with a tilt: in a
+        // transposed system springs do not act on w.)
         if (!truncation.tilt.empty())
           continue;
         for (unsigned int node = 0; node < face.n_nodes(); ++node)

@@ -8,8 +8,8 @@ namespace Viscoplastic
 {
   namespace
   {
-    /// Where no solution is found, it is sought along those for these parts of
-    /// the friction coefficients, to this tolerance.
+    /// If no solution is found, it is approached by those for these parts of
+    /// the friction coefficients, which are found to this tolerance.
     constexpr std::array<double, 4> parts_of_friction{{0., 0.25, 0.5, 0.75}};
     constexpr double                tolerance_of_parts = 1e-3;
   } // namespace
@@ -44,8 +44,7 @@ namespace Viscoplastic
       }
     catch (const ExceptionBase &)
       {
-        // Once more from the start, without friction at first, and then with
-        // more and more of it, each time near the last solution.
+        // Start without friction, and follow the solution as friction grows.
         const std::exception_ptr failure = std::current_exception();
         Vector<double>           back(first_x);
         face.add(-1., x, back);

@@ -11,11 +11,11 @@ namespace Viscoplastic
 {
   namespace
   {
-    /// Bounds that follow are given so many corrections to halve the error.
+    /// Bounds rest once this many corrections have not halved the error.
     constexpr unsigned int patience = 8;
-    /// Bounds at rest are moved when the step is solved for them to this part
-    /// of what they miss, and until that has become less by this factor for
-    /// each time that Newton's method has stalled.
+    /// Bounds at rest are moved when the error for them is below part_of_missed
+    /// times their misfit. They follow again when it has fallen by
+    /// near_enough^n, where Newton's method has stalled n times.
     constexpr double part_of_missed = 0.1, near_enough = 0.3;
   } // namespace
 
@@ -83,8 +83,8 @@ namespace Viscoplastic
     double         stiffness                = curvature;
     Vector<double> after(residual);
     face.add(-1., response, after);
-    // Where pieces meet, a slip that turns takes part in what presses the
-    // other piece.
+    // Where pieces meet, friction that turns with the slip contributes to the
+    // pressure on the other piece.
     for (unsigned int node = 0; node < face.n_nodes(); ++node)
       if (!face.has_plain_friction(node))
         face.set_node_values(
@@ -146,7 +146,7 @@ namespace Viscoplastic
         has_moved    = false;
         return true;
       }
-    // Until the solution for the present bounds tells what they miss.
+    // Wait until the step is solved for the present bounds.
     if (error - missed > part_of_missed * missed)
       return false;
     if (first_missed == 0.)
@@ -160,7 +160,8 @@ namespace Viscoplastic
       }
     if (has_moved)
       {
-        // Not positive: away from a solution that repels.
+        // A factor that is not positive would lead back from a fixed point that
+        // repels: take the full step.
         if (const auto aitken =
               aitken_factor(face, share, last_missing, missing))
           share = *aitken > 0. ? std::clamp(*aitken, 0.05, 1.) : 1.;

@@ -115,7 +115,7 @@ namespace Viscoplastic
     for (unsigned int p = begin; p < end; ++p)
       remaining -= node_force(face.points[p], state.multiplier[p]);
 
-    // Piece by piece, as often as the others change its forces.
+    // Gauss-Seidel over the pieces until their forces settle.
     bool has_settled = false;
     for (unsigned int sweep = 0; sweep < max_sweeps && !has_settled; ++sweep)
       {
@@ -154,13 +154,14 @@ namespace Viscoplastic
           }
         return {};
       }
-    // Bounds that have not settled yet are measured (CoulombBounds::measure()).
-    // With the bounds of its pressures, the minimum at the node is what
-    // Coulomb's law asks for.
+    // With the bounds of its pressures, the minimum of J at the node obeys
+    // Coulomb's law. The misfit of bounds that have not settled is measured
+    // later (CoulombBounds::measure()).
     const Tensor<1, 3> x =
       Viscoplastic::relax_node(face, node, inverse_diagonal, force, state);
-    // Of two pieces between which friction wedges a node, one holds it as well
-    // as both; but each needs its own pressure for its bound.
+    // If friction wedges a node between two pieces, one of them suffices to
+    // hold it. Mark both as touched, since each friction bound needs the
+    // pressure of its own piece.
     if (end - obstacle > 1)
       {
         const double gap = rounding_of_gap * (inverse_diagonal * force).norm();
@@ -206,8 +207,8 @@ namespace Viscoplastic
                                          state.slip[p] / state.slip[p].norm()),
                               of_force[o - obstacle]);
             }
-        // Slips that turn press the pieces that they do not move along; what
-        // these give way by is a pressure already.
+        // Tilt the turning springs, too, since slip that turns presses the
+        // other pieces. Springs of compliant obstacles are pressures already.
         if (forces && !face.has_plain_friction(node))
           {
             const Tensor<2, 3> turning =
@@ -266,7 +267,8 @@ namespace Viscoplastic
 
   namespace
   {
-    /// The parts of a node's problem along the foundation: W_tt, q_t, W_tn.
+    /// The tangential parts of a node's problem: the flexibility W_tt, the free
+    /// motion q_t and the coupling W_tn.
     struct Tangential
     {
       Tensor<2, 2> flexibility;
@@ -286,8 +288,8 @@ namespace Viscoplastic
 
 
 
-    /// The pressure at which the foundation stops a motion to @p free_w beyond
-    /// it.
+    /// The normal force at which the foundation stops a node that would
+    /// penetrate by @p free_w without it.
     double
     stopping_force(const NormalCompliance &compliance,
                    const double            flexibility,
@@ -325,7 +327,7 @@ namespace Viscoplastic
     if (may_open && !(node.present > 0.))
       return 0.;
 
-    // Held along the foundation: what couples is eliminated.
+    // Try stick: eliminate the tangential components.
     constexpr double glued = std::numeric_limits<double>::max();
     const auto       held  = [&](const Tensor<1, 2> &motion) {
       return solve_friction_point(t.flexibility, motion, node.n_tangents, glued)
@@ -348,14 +350,14 @@ namespace Viscoplastic
               return p;
         }
 
-    // Between where the node is beyond its foundation and where it is not.
+    // Bracket the root of excess() by low and high.
     double low =
       node.present > 0. && excess(node.present) > 0. ? node.present : 0.;
     if (may_open && low == 0.)
       return 0.;
-    // Without any motion beyond the foundation what is given of friction
-    // presses. The flexibility is positive definite: the excess falls without
-    // bound. What is no number ends the search, and is met in residuals.
+    // The given part of friction sets a scale, too, since it may cause the only
+    // pressure. The excess falls without bound, since the flexibility is
+    // positive definite. NaNs end the search and are detected in residuals.
     double high = std::max({2. * low,
                             stuck,
                             stopping_force(node.compliance, W_nn, q_n),

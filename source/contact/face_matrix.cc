@@ -23,7 +23,7 @@ namespace Viscoplastic
     double largest = 0.;
     for (unsigned int i = 0; i < n; ++i)
       largest = std::max(largest, block[i][i]);
-    // A power of two, by which inverses are without rounding of their own.
+    // A power of two, whose inverse is exact.
     for (unsigned int i = n; i < 3; ++i)
       block[i][i] = n > 0 ? std::ldexp(1., std::ilogb(largest)) : 1.;
   }

@@ -9,7 +9,8 @@ namespace Viscoplastic
 {
   namespace
   {
-    /// A spring along a row that resists as the node itself or more.
+    /// A spring along @p row, at most @p stiffest times as stiff as the node;
+    /// without limit if @p inverse_diagonal is empty.
     Tensor<2, 3>
     spring_along(const Tensor<1, 3>              &row,
                  const double                     stiffness,
@@ -39,9 +40,9 @@ namespace Viscoplastic
       if (const ContactLayout::Point &point = face.points[p];
           point.n_tangents == 2 && state.slips(point, p))
         {
-          // kappa P_e with kappa = rho/|s|, which tends to infinity as a
-          // point comes to rest. What came from another mesh has not slipped
-          // on this one, and has its direction from its force.
+          // The spring is rho/|s| (I - e e^T), which tends to infinity as a
+          // point comes to rest. A point from another mesh has no slip on this
+          // one, so that its multiplier has to give the direction.
           const double       size = state.slip[p].norm();
           const Tensor<1, 2> along =
             size > 0. ? state.slip[p] : state.multiplier[p];
@@ -88,7 +89,7 @@ namespace Viscoplastic
             else if (state.blocks(point, p))
               for (unsigned int i = 0; i < point.n_tangents; ++i)
                 {
-                  // Remove what is left of this direction.
+                  // Remove the part of this direction that is still free.
                   Tensor<1, 3> q = projector * point.map[i];
                   if (q.norm() > 1e-8 * point.map[i].norm())
                     {

@@ -12,8 +12,8 @@ namespace Viscoplastic
   namespace
   {
     /// The functional of friction j(v) = sum_c rho_c |v_c| and the energy of
-    /// obstacles that give way, along a line: their change and its derivative
-    /// to the right. Collective.
+    /// compliant obstacles along a line: their change and its right derivative.
+    /// Collective.
     struct FaceAlongLine
     {
       struct Friction
@@ -89,8 +89,8 @@ namespace Viscoplastic
 
 
 
-    /// How far a motion of a node may go, and goes with @p w, towards an
-    /// obstacle that it does not touch yet; @p goes > @p may if it meets it.
+    /// How far a node may go, and goes with a correction, toward an obstacle
+    /// that it does not touch yet; it meets the obstacle if `goes` > `may`.
     struct Approach
     {
       double may, goes;
@@ -109,9 +109,8 @@ namespace Viscoplastic
 
 
 
-    /// Whether a node meets the obstacle @p p with a correction. At corners,
-    /// where the way to it is along other points, the line search alone
-    /// decides.
+    /// Whether a correction takes a node beyond the rigid obstacle @p p. False
+    /// at corners, where points share a node: they are left to the line search.
     bool
     meets(const ContactLayout  &face,
           const ContactState   &state,
@@ -129,8 +128,8 @@ namespace Viscoplastic
 
 
 
-    /// The part of a correction that is possible without entering an obstacle,
-    /// at most @p most. Collective.
+    /// The largest step up to @p most that enters no rigid obstacle.
+    /// Collective.
     double
     largest_step(const ContactLayout  &face,
                  const ContactState   &state,
@@ -152,8 +151,8 @@ namespace Viscoplastic
 
 
 
-    /// Whether a correction @p w makes the slip of a node change sides. At
-    /// corners, where points share a node, the line search alone decides.
+    /// Whether a correction @p w reverses the slip of a node. False at corners,
+    /// where points share a node: they are left to the line search.
     bool
     reverses(const ContactLayout  &face,
              const ContactState   &state,
@@ -171,9 +170,9 @@ namespace Viscoplastic
 
 
 
-    /// Where a correction @p w takes a node beyond a kink of J, let the change
-    /// @p here of the node end there: slip that would change sides comes to
-    /// rest, and a way into an obstacle ends at it. Returns whether it does.
+    /// If a correction @p w takes a node beyond a kink of J, let the change @p
+    /// here of the node end at the kink: slip that would reverse comes to rest,
+    /// motion into an obstacle ends at it. Returns whether the node stops.
     bool
     stop_node_at_kinks(const ContactLayout  &face,
                        const ContactState   &state,
@@ -243,7 +242,7 @@ namespace Viscoplastic
           if (right == largest && derivative(right) < 0.)
             return at(right);
         }
-      // As far as numbers go: the step may be much smaller than 1.
+      // To full relative accuracy, since the step may be much smaller than 1.
       for (unsigned int bisection = 0;
            bisection < 200 &&
            right - left > std::numeric_limits<double>::epsilon() * right;
@@ -277,7 +276,7 @@ namespace Viscoplastic
               const ContactState              &state,
               const Vector<double>            &w)
   {
-    // As it is, contact is in balance with the body but for the descent.
+    // terms.slope is that of all of J, and line_search() takes the bulk's.
     const FaceAlongLine line = face_along(face, state, w);
     return line_search({terms.slope + line.derivative(0.), terms.curvature},
                        line,
@@ -363,7 +362,7 @@ namespace Viscoplastic
     bulk.move_face(stop);
     const Vector<double> new_residual = bulk.face_residual();
     Vector<double>       force(x.size());
-    // J is quadratic but for friction: its mean slope makes the change.
+    // The energy of the bulk is quadratic: the mean of its slopes is exact.
     const double energy_change =
       change_of_j -
       0.5 * (face.dot(stop, residual) + face.dot(stop, new_residual));
@@ -373,9 +372,9 @@ namespace Viscoplastic
                         /* may_rebuild = */ false);
     KinkStep result;
     result.linear_iterations = 0;
-    // The stop has moved the face with the bulk at rest. Where that makes
-    // much of the residual, as next to incompressible bodies, a solution as
-    // good as the first one takes more.
+    // The face has moved with the bulk at rest. Where that enlarges the
+    // residual much, as in nearly incompressible bodies, the same absolute
+    // accuracy takes a smaller relative tolerance.
     const double made = std::sqrt(face.dot(residual, residual) /
                                   face.dot(new_residual, new_residual));
     for (const double reduction :
@@ -412,8 +411,8 @@ namespace Viscoplastic
                       const double                     least,
                       const ContactState              &state)
   {
-    // What is met after so many times the way to the first obstacle is held as
-    // well; more would hold all of a body that falls far.
+    // Hold obstacles that are met within this many times the way to the first
+    // one; a larger factor would hold all of a body that falls far.
     constexpr double near = 2.;
     KinkStep         result;
     result.linear_iterations = 0;

@@ -12,18 +12,18 @@ namespace Viscoplastic
 {
   namespace
   {
-    /// Directions that are held by less than this part of others are not.
+    /// Eigenvalues below this part of the largest one count as zero.
     constexpr double least_hold = 1e-12;
-    /// Where a node can move in what gives way, pressures hold what they can
-    /// before friction of another piece does: they count that much more. What
-    /// friction alone holds is known to rounding times that.
+    /// The weight of pressures in the least norm at nodes that can move into a
+    /// compliant obstacle: pressures carry what they can before the friction of
+    /// another piece does. It magnifies rounding of friction.
     constexpr double preference_of_pressures = 1e4;
-    /// Friction this near to its bound stays at it.
+    /// Friction that is within this relative distance of its bound stays at it.
     constexpr double at_limit = 1e-8;
 
 
 
-    /// Least norm solutions of least squares, column by column.
+    /// The pseudo-inverse: least-norm solutions of least squares, by column.
     FullMatrix<double>
     pseudo_inverse(const FullMatrix<double> &matrix)
     {
@@ -50,7 +50,7 @@ namespace Viscoplastic
 
 
 
-    /// The nearest point of the cone |lambda| <= given + coefficient p, p >= 0.
+    /// Project onto the cone |lambda| <= given + coefficient p, p >= 0.
     void
     clip_to_cone(const double  given,
                  const double  coefficient,
@@ -176,7 +176,8 @@ namespace Viscoplastic
       {
         double &pressure = multipliers[o - begin][0];
         pressure         = takes_part(o) ? pressure : 0.;
-        // The friction that this pressure carries, as a rule of one point.
+        // Project together with the friction of the points, usually one, whose
+        // bound depends on this pressure.
         const double all = pressure;
         for (unsigned int p = begin; law != nullptr && p < obstacle; ++p)
           if (const double coefficient = law->of_pressure[p][o - obstacle];
@@ -222,7 +223,7 @@ namespace Viscoplastic
   Tensor<1, 3>
   NodeForces::fit(const Tensor<1, 3> &residual, ContactState &result) const
   {
-    // What does not hold the node.
+    // Known forces: of compliant obstacles and of slipping points.
     Tensor<1, 3> missing = residual;
     for (unsigned int p = begin; p < end; ++p)
       {
@@ -236,7 +237,7 @@ namespace Viscoplastic
         result.multiplier[p] = lambda;
       }
 
-    // Least norm.
+    // The solution of least norm without regard to the laws.
     const Tensor<1, 3>        goal     = held * missing;
     const Tensor<1, 3>        solution = invert_gram(goal);
     std::vector<Tensor<1, 2>> lambda(end - begin);
@@ -250,10 +251,10 @@ namespace Viscoplastic
         }
     std::vector<Tensor<1, 2>> z = lambda, old;
     clip(lambda);
-    // Where laws do not allow that: accelerated projected gradients. One in a
-    // thousand random nodes takes all of them, with nothing left to gain but
-    // where bounds or areas of pieces differ by some 1e4. Whatever they end
-    // with is admissible, and the force that it misses counts as an error.
+    // If the laws do not allow it: accelerated projected gradients with
+    // restart. One in a thousand random nodes takes all steps, without a
+    // visible loss unless bounds or areas of pieces differ by some 1e4. Every
+    // iterate is admissible, and the force that it misses counts as an error.
     if (lambda != z)
       {
         const double L        = largest;

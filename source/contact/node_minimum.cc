@@ -7,17 +7,16 @@ namespace Viscoplastic
 {
   namespace
   {
-    /// A slip or a violation below this part of the motion of a node is
-    /// rounding.
+    /// Slip or violation below this part of the node's motion is rounding.
     constexpr double rounding = 1e-14;
 
 
 
-    /// J of one node with some of its points held.
+    /// Minimizes J over one node with some of its points held.
     class NodeProblem
     {
     public:
-      /// Where J may be least, and which points are held there.
+      /// A possible minimizer of J, and which points are held there.
       struct Candidate
       {
         Tensor<1, 3>      x;
@@ -30,41 +29,41 @@ namespace Viscoplastic
                   const Tensor<1, 3>  &force,
                   const ContactState  &state);
 
-      /// The points that can be held: friction, and obstacles that are rigid.
+      /// The points that can be held: those with friction, and rigid obstacles.
       std::vector<unsigned int> holders;
 
-      /// Hold the holders @p i with held[i]. Returns whether all can be at
-      /// once.
+      /// Hold the holders i with held[i]. Returns false if they cannot be held
+      /// at once, or if a glued point is not among them.
       bool
       hold(const std::vector<bool> &held);
 
-      /// The minimum with these held, unless it is where others are held, too,
-      /// or beyond an obstacle.
+      /// The minimum with the present points held; nothing if another point
+      /// with friction is at rest there, or an obstacle is entered.
       std::optional<Candidate>
       minimum() const;
 
-      /// J(to) - J(from), without the loss of digits of a difference.
+      /// J(to) - J(from), evaluated without cancellation.
       double
       difference(const Candidate &from, const Candidate &to) const;
 
     private:
-      /// The gradient of J, the norm of slip replaced by a parabola in the
-      /// range of rounding, and the matrix of second derivatives.
+      /// The gradient of J and, if asked for, its Hessian, with the norm of
+      /// slip replaced by a parabola in the range of rounding.
       Tensor<1, 3>
       gradient(const Tensor<1, 3> &x, Tensor<2, 3> *hessian = nullptr) const;
 
-      /// Where Newton's method has come to a kink, since the norm of a slip is
-      /// zero there: whether its point starts to slip, and along which
-      /// direction of descent.
+      /// At a kink of J, where the slip of a point is zero: the direction of
+      /// descent along which it starts to slip, or nothing if it sticks.
       std::optional<Tensor<1, 3>>
       departure(const Tensor<1, 3> &x) const;
 
-      /// The step along a direction from constraints held.
+      /// The Newton step in the free directions; @p downhill: minus the
+      /// gradient.
       Tensor<1, 3>
       newton_direction(Tensor<2, 3>        hessian,
                        const Tensor<1, 3> &downhill) const;
 
-      /// How far J decreases from @p x along a direction of descent.
+      /// The step from @p x that minimizes J along a direction of descent.
       double
       step_length(const Tensor<1, 3> &x, const Tensor<1, 3> &direction) const;
 
@@ -79,11 +78,11 @@ namespace Viscoplastic
       const Tensor<2, 3>  &stiffness;
       const Tensor<1, 3>  &force;
       const ContactState  &state;
-      /// Of motions at this node, below which there is rounding.
+      /// Motions of the node below this length are rounding.
       double negligible;
 
       std::vector<bool> is_held; // point by point
-      /// What is held is at `start`, and moves in the range of a projector.
+      /// With the points held, x is in `start` + the range of the projector.
       Tensor<1, 3> start;
       Tensor<2, 3> projector;
     };
@@ -142,7 +141,7 @@ namespace Viscoplastic
                   (point.is_obstacle ? state.bound[p] :
                                        state.foundation_step[p][row]) -
                   map * start;
-                // What is left of this direction.
+                // The part of this direction that is still free.
                 Tensor<1, 3> q    = projector * map;
                 const double size = q.norm();
                 if (size > 1e-8 * map.norm())
@@ -157,7 +156,7 @@ namespace Viscoplastic
           }
         else if (!face.points[holders[i]].is_obstacle &&
                  state.bound[holders[i]] > 1e300)
-          return false; // it is glued
+          return false; // a glued point
       return true;
     }
 
@@ -228,7 +227,7 @@ namespace Viscoplastic
         if (has_friction(p) && !is_held[p - begin] &&
             !(state.slip_with(face.points[p], p, x).norm() > 10. * negligible))
           {
-            // Of the others, as if this had no friction.
+            // The gradient of J without the friction of this point.
             ContactState without(state);
             without.bound[p] = 0.;
             NodeProblem others(
@@ -281,9 +280,9 @@ namespace Viscoplastic
     std::optional<NodeProblem::Candidate>
     NodeProblem::minimum() const
     {
-      // Newton's method from where the node would be without its points. Where
-      // it ends early, the candidate is but a worse one: the contact solver
-      // looks for another if the duality gap does not accept the best.
+      // Newton's method from the minimum without contact. If it ends early, the
+      // candidate is merely a worse one: the contact solver goes on if the
+      // duality gap does not accept the best.
       Tensor<1, 3> x = start + projector * (invert(stiffness) * force - start);
       double       scale = 0.;
       for (unsigned int d = 0; d < 3; ++d)
@@ -316,7 +315,7 @@ namespace Viscoplastic
           if (point.is_obstacle ? s[0] > state.bound[p] + room :
                                   has_friction(p) && !(s.norm() > room))
             return {};
-          // An obstacle that is met by chance may press, too.
+          // An obstacle that is touched without being held may press, too.
           result.is_held[p - begin] =
             point.is_obstacle && s[0] >= state.bound[p] - room;
         }

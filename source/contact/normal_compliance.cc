@@ -14,9 +14,9 @@ namespace Viscoplastic
   namespace
   {
     /// The root of a convex increasing function at or below @p start, to which
-    /// Newton's method descends. The last step mends the rounding of the long
-    /// ones. From a start where no term is larger than the sum at the root, as
-    /// below, that takes ten iterations at most, whatever the exponents.
+    /// Newton's method descends. The last step removes the rounding of the long
+    /// ones. It takes ten iterations at most, whatever the exponents, if no
+    /// term at @p start is larger than the sum at the root, as below.
     template <typename Function, typename Derivative>
     double
     root_below(double            start,
@@ -42,7 +42,7 @@ namespace Viscoplastic
   double
   NormalCompliance::penetration(const double p) const
   {
-    // No piece alone would be pressed less.
+    // At the root no piece carries more than p.
     double most = std::numeric_limits<double>::max();
     for (const Piece &piece : pieces)
       most = std::min(most, piece.law.penetration(piece.factor, p));
@@ -59,7 +59,7 @@ namespace Viscoplastic
   NormalCompliance::penetration(const double flexibility,
                                 const double free_w) const
   {
-    // Nor would all of it be pressed as deep without the way that is left.
+    // At the root w <= free_w and flexibility p(w) <= free_w.
     return root_below(
       std::min(free_w, penetration(free_w / flexibility)),
       [&](const double w) { return w + flexibility * force(w) - free_w; },

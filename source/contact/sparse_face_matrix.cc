@@ -60,8 +60,8 @@ namespace Viscoplastic
   void
   SparseFaceMatrix::make_stages()
   {
-    // The first stage of each rank that none before it has which it couples
-    // with.
+    // Greedy coloring: each rank takes the first stage after the common one
+    // that no rank before it has with which it couples.
     std::vector<unsigned int> neighbors;
     for (const auto &[rank, n_entries] :
          changes.get_partitioner()->ghost_targets())
@@ -137,7 +137,7 @@ namespace Viscoplastic
                                                const Vector<double> &change,
                                                Vector<double>       &r) const
   {
-    // What the first stage moves couples with nothing elsewhere.
+    // Nodes of the first stage couple with no other rank.
     if (stage == 0)
       return;
     changes.zero_out_ghost_values();

@@ -17,19 +17,18 @@ namespace Viscoplastic
   {
     using Generalized = std::vector<double>;
 
-    /// What is missing to balance, relative to the parts that the loads are the
-    /// sum of, that counts as rounding.
+    /// A misfit below this part of HeldBody::load_size is rounding.
     constexpr double load_rounding = 1e-12;
-    /// Round cones, of friction in space, are taken apart step by step, which
-    /// leaves more.
+    /// The same for 3D friction: its round cones are approximated step by step.
     constexpr double rounding_of_cones = 1e-6;
-    /// The sine of the angle at which a motion may enter an obstacle, and what
-    /// it may miss of the work of friction, relative to its own.
+    /// The accuracy of a motion as a proof: the sine of the angle at which it
+    /// may enter an obstacle, and the work of friction that it may miss,
+    /// relative to that of the loads.
     constexpr double proof_tolerance = 1e-13;
-    /// Friction with a bound so far above the loads holds whatever they are.
+    /// Friction with a bound of this many times the loads counts as unlimited.
     constexpr double without_end = 1e4;
-    /// Beyond any need: a few for each rigid motion, more where cones of
-    /// friction are round.
+    /// More than needed: a few per rigid motion, more with round friction
+    /// cones.
     constexpr unsigned int max_iterations = 1000;
 
 
@@ -50,7 +49,7 @@ namespace Viscoplastic
 
 
 
-    /// What unit forces at each point do on each of the motions.
+    /// The work of unit forces at each point on each of the motions.
     std::vector<std::vector<Tensor<1, 2>>>
     work_of_forces(const HeldBody &body)
     {
@@ -62,7 +61,7 @@ namespace Viscoplastic
             {
               Tensor<1, 2> s =
                 slip(point, body.face.node_values(motion, point.node));
-              // What is perpendicular but for rounding resists nothing.
+              // Motions perpendicular to a row up to rounding do no work.
               for (unsigned int t = 0; t < point.n_tangents; ++t)
                 if (std::abs(s[t]) <= 1e-12 * point.map[t].norm())
                   s[t] = 0.;
@@ -74,10 +73,10 @@ namespace Viscoplastic
 
 
 
-    /// The set of what contact can balance: a cone of pressures, with the
-    /// friction that they bring, plus the forces within given bounds. One
-    /// dimension more makes a cone of all of it: its last entry is 1 for forces
-    /// of given bounds, 0 for those of pressures.
+    /// The set of generalized forces (work on the motions) that contact can
+    /// balance: a cone of pressures, with the friction that follows from them,
+    /// plus friction within given bounds. One more dimension makes the set a
+    /// cone: the last entry is 1 for friction of given bounds, 0 for pressures.
     class Resistance
     {
     public:
@@ -85,8 +84,8 @@ namespace Viscoplastic
       struct Force
       {
         Generalized value;
-        /// Of a point of this rank; at which obstacle, if it is one, and how
-        /// much pressure makes it.
+        /// Whether its point is on this rank; its obstacle, if any, and
+        /// pressure.
         bool         is_here  = false;
         unsigned int obstacle = numbers::invalid_unsigned_int;
         double       pressure = 0.;
@@ -103,12 +102,12 @@ namespace Viscoplastic
         , forces(work_of_forces(body))
       {}
 
-      /// The generator that does most work on a motion.
+      /// The generator that does most work on a motion. Collective.
       Force
       most_effective(const Generalized &motion) const
       {
         const unsigned int n = body.motions.size();
-        // Friction of given bounds acts at all points together.
+        // Friction of given bounds at all points is one generator.
         Force friction;
         friction.value.assign(n + 1, 0.);
         Force      best;
@@ -177,7 +176,7 @@ namespace Viscoplastic
       }
 
     private:
-      /// The friction of a point that does most work on the motion.
+      /// Add the friction of size @p most that does most work on the motion.
       void
       add_friction(const unsigned int p,
                    const double       most,
@@ -202,7 +201,7 @@ namespace Viscoplastic
 
 
 
-    /// The coefficients of the combination nearest to the target.
+    /// The coefficients of the linear combination nearest to the target.
     Generalized
     least_squares(const std::vector<Resistance::Force> &forces,
                   const Generalized                    &target)
@@ -220,8 +219,8 @@ namespace Viscoplastic
 
 
 
-    /// The eigenvalues and eigenvectors of a symmetric matrix; what is nothing
-    /// beside the largest one is zero.
+    /// The eigenvalues and eigenvectors of a symmetric matrix; eigenvalues that
+    /// are negligible relative to the largest one are set to zero.
     std::vector<std::pair<double, Generalized>>
     eigenpairs(const FullMatrix<double> &matrix)
     {
@@ -281,7 +280,7 @@ namespace Viscoplastic
           break;
         const auto   force = resistance.most_effective(missing);
         const double work  = dot(force.value, missing) / left;
-        // Round cones end in rounding, of which squares are compared.
+        // With round cones the misfit stops to fall at rounding of its square.
         is_proof =
           work <= proof_tolerance +
                     10. * std::numeric_limits<double>::epsilon() / left ||
@@ -294,7 +293,7 @@ namespace Viscoplastic
         while (!forces.empty())
           {
             const Generalized solution = least_squares(forces, target);
-            // As far as all stay positive.
+            // Go as far as all coefficients stay positive.
             double       step    = 1.;
             unsigned int leaving = forces.size();
             for (unsigned int j = 0; j < forces.size(); ++j)
@@ -320,7 +319,7 @@ namespace Viscoplastic
           for (unsigned int i = 0; i < target.size(); ++i)
             missing[i] -= coefficients[j] * forces[j].value[i];
       }
-    // Without a proof of the contrary: the solve of the step decides then.
+    // Without a proof of the contrary the solve of the step decides.
     result.is_balanced = !is_proof;
     if (is_proof)
       {
@@ -366,8 +365,8 @@ namespace Viscoplastic
     Generalized  motion(n, 0.);
     ContactState state(contact);
     state.slip = slips;
-    // Newton's method; the line search makes it converge. Where it ends early,
-    // the solves of the step begin farther from their end.
+    // Newton's method with a line search. If it ends early, the solves of the
+    // step merely begin farther from their solution.
     for (unsigned int iteration = 0; iteration < 100 && !free.empty();
          ++iteration)
       {

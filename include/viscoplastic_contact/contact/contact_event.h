@@ -7,45 +7,46 @@
 
 namespace Viscoplastic
 {
-  /// Whether something happens in a step whose time matters: slip begins where
-  /// there was none, comes to cover the face, ends everywhere, or turns back
-  /// somewhere (the slip of the step is against that of the step before, with
-  /// no rest between); or contact that opens and closes begins, covers its
-  /// face, or ends. Points that cannot slip or that slip without friction do
+  /// Return whether the step contains an event whose time matters: slip begins
+  /// where all points stuck, comes to cover all points, ends everywhere, or
+  /// reverses at a point without rest in between; or unilateral contact begins,
+  /// comes to cover all obstacles, or ends. Glued and frictionless points do
   /// not count.
   ///
-  /// @p from_kink: slip may end in this step without being an event, since its
-  /// beginning is a known kink of the data. Collective.
+  /// @p from_kink: the step starts at a known kink of the data in time, so that
+  /// slip or contact that ends, slip that reverses, and contact that begins are
+  /// no events. Collective.
   bool
   has_contact_event(const ContactLayout &face,
                     const ContactState  &old_state,
                     const ContactState  &state,
                     const bool           from_kink);
 
-  /// The two errors that a time step makes in the slip of points that slip in
-  /// it and in the step before.
+  /// Time discretization errors in the slip of points that slip both in a step
+  /// and in the one before it.
   struct SlipDefects
   {
-    /// sum of |lambda| |s| (1 - cos theta), with theta the angle between the
-    /// multipliers of both steps, or pi/2 if it is larger: how much more work
-    /// slip in the old direction would have asked for. And sum of |lambda|
-    /// times the slip that `resting' points miss.
+    /// The sum of |lambda| |s| (1 - cos theta), where theta is the angle
+    /// between the multipliers of both steps, at most pi/2: the complementarity
+    /// defect of friction in its old direction. Plus the sum of |lambda| times
+    /// the size of `resting`.
     double work = 0.;
-    /// The error of each point's slip from taking its direction at the end of
-    /// the step instead of the mean of both ends.
+    /// The error in the slip of each point due to taking its direction at the
+    /// end of the step instead of the mean of the directions at both ends.
     std::vector<Tensor<1, 2>> turning;
-    /// Points slow down so fast that they come to rest before the end, where
-    /// the step sees them slip. With the rates v_0 > 0 > v_1 of a line through
-    /// the mean rate of the step, twice as steep as the one through the mean
-    /// rates of both steps, since slip may slow down faster towards its end,
-    /// they miss k v_1^2 / (2 (v_0 - v_1)).
+    /// The slip missed by a point that comes to rest before the end of the
+    /// step. The slip rate is taken as linear, with the mean rate of the step
+    /// and twice the slope of the line through the mean rates of both steps,
+    /// since slip may decelerate toward its end. Falling from v_0 > 0 to v_1 <
+    /// 0 in the step, it misses k v_1^2 / (2 (v_0 - v_1)).
     std::vector<Tensor<1, 2>> resting;
-    /// The mean slip rate of the step before over that of this step, at most 1.
+    /// The mean slip rate of the step before over that of this step, weighted
+    /// by |lambda|, over points that do not reverse; at most 1.
     double rate_before = 0.;
   };
 
-  /// @p slips: the slip increments of the step, whose size is @p k, after one
-  /// of size @p old_k. Collective.
+  /// Estimate the defects of a step of size @p k with the slip increments @p
+  /// slips, by point, after a step of size @p old_k. Collective.
   SlipDefects
   slip_defects(const ContactLayout             &face,
                const ContactState              &old_state,
@@ -54,8 +55,8 @@ namespace Viscoplastic
                const double                     k,
                const double                     old_k);
 
-  /// Of what slips at the end of a step, the part that has been at rest before,
-  /// or has slipped the other way, by bounds. Collective.
+  /// Return which part of the slipping points, weighted by bounds, stuck or
+  /// slipped the other way in the step before. Collective.
   double
   slip_begun(const ContactLayout &face,
              const ContactState  &old_state,

@@ -38,15 +38,16 @@ namespace Viscoplastic
     /// A linear solve meant to be the last one aims at this fraction of the
     /// tolerance.
     static constexpr double safety = 0.3;
-    /// After so many iterations that have not halved the error, is_rounding()
-    /// is asked.
+    /// is_rounding() is called after this many iterations that have not halved
+    /// the error.
     static constexpr unsigned int stalled_after = 15;
 
     /// (1) Nonlinear Gauss-Seidel over the face nodes.
     void
     relax(const unsigned int n_sweeps);
 
-    /// Minimize J over the displacement of one node; adds to @p change.
+    /// Minimize J over the displacement of one node; adds the step to @p
+    /// change.
     void
     relax_node(const unsigned int node, Vector<double> &change);
 
@@ -55,15 +56,14 @@ namespace Viscoplastic
     bool
     is_solved();
 
-    /// Whether the iteration has come to rest above the tolerance with an error
-    /// that is rounding of the residual; then this is the rounding error of the
-    /// bulk.
+    /// Whether the iteration has stalled with an error that is rounding of the
+    /// residual. If so, raises `bulk.scale.rounding_error` to this error.
     bool
     is_rounding(const Certificate &certificate);
 
-    /// The bound on the error in the energy norm that follows from @p
-    /// dual_norm, that of the residual, and the complementarity defect of @p
-    /// certificate.
+    /// Return the bound on the energy error that follows from @p dual_norm, the
+    /// dual norm of the residual, and from the defect of @p certificate. Sets
+    /// the duality gap and the relative error of the report.
     double
     bound(const double dual_norm, const Certificate &certificate);
 
@@ -71,12 +71,12 @@ namespace Viscoplastic
     void
     correct();
 
-    /// (3) Line search: the step along w that minimizes J, no slip beyond its
-    /// reversal and no node beyond its obstacle. Returns the change of J.
+    /// (3) Line search: take the step along w that minimizes J, where slips do
+    /// not reverse and nodes stop at obstacles. Returns the change of J.
     double
     search();
 
-    /// (4) Solve for the interior with the face displacement as it is.
+    /// (4) Solve for the interior with the face displacement held.
     void
     follow();
 
@@ -98,7 +98,7 @@ namespace Viscoplastic
 
     const FaceMatrix         &matrix;
     std::vector<Tensor<2, 3>> diagonal, inverse_diagonal; // node by node
-    std::vector<double>       rounding; // of steps of nodes, relative
+    std::vector<double>       rounding; // of nodal steps, relative
     /// The bounds of Coulomb's law; absent where bounds are given.
     std::optional<CoulombBounds> bounds;
 

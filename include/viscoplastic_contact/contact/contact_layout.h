@@ -16,16 +16,16 @@ namespace Viscoplastic
 {
   using namespace dealii;
 
-  /// The contact points of Gamma_3 without finite elements: which unknowns of
-  /// the face they see, and how. Points of friction resist slip; an obstacle is
-  /// what keeps a node out of the foundation in unilateral contact, at once or,
-  /// with normal compliance, by a force that grows with penetration. Each rank
-  /// has the nodes that it owns, so that the part of a rank is small where
-  /// there are many of them.
+  /// The contact points of Gamma_3 without reference to finite elements: which
+  /// displacement components of the face each point constrains, and how. A
+  /// friction point resists slip; an obstacle is a unilateral condition that
+  /// keeps its node out of the foundation, rigidly or, with normal compliance,
+  /// by a force that grows with penetration. Each rank has the nodes that it
+  /// owns.
   ///
   /// A face vector holds, node by node, the displacement components that some
-  /// point at the node sees (1 to 3). Blocks of a node are padded to
-  /// size 3.
+  /// point at the node sees (1 to 3). Vectors and matrices of a node are padded
+  /// to size 3.
   struct ContactLayout
   {
     struct Point
@@ -57,8 +57,8 @@ namespace Viscoplastic
 
     /// Position of each node's first component in face vectors, and their size.
     std::vector<unsigned int> first_dof{0};
-    /// The points node by node, friction before obstacles, and as compressed
-    /// rows the first point of each node and the number of points.
+    /// The points by node, friction before obstacles, and in compressed row
+    /// format the first point of each node, followed by the number of points.
     std::vector<Point>        points;
     std::vector<unsigned int> first_point{0};
     /// Whether there are obstacles on any rank.
@@ -99,8 +99,9 @@ namespace Viscoplastic
       return p;
     }
 
-    /// Whether friction at a node is that of a single point, which obstacles
-    /// there do not act on: everywhere but where pieces meet.
+    /// Whether a node has exactly one friction point, and its slip is
+    /// orthogonal to the normals of all obstacles there: false where pieces
+    /// meet.
     bool
     has_plain_friction(const unsigned int node) const;
 
@@ -123,8 +124,8 @@ namespace Viscoplastic
         x[first_dof[node] + i] = values[i];
     }
 
-    /// y := y + factor x for face vectors. (Vector's own operations refuse
-    /// empty ones, which are ordinary here.)
+    /// y := y + factor x for face vectors. (Operations of dealii::Vector refuse
+    /// empty vectors, which are ordinary here.)
     void
     add(const double factor, const Vector<double> &x, Vector<double> &y) const
     {
@@ -132,8 +133,8 @@ namespace Viscoplastic
         y[k] += factor * x[k];
     }
 
-    /// The sum of a number over the ranks of the face. Collective, as the next
-    /// ones.
+    /// The sum of @p part over the ranks of the face. Collective, as are any()
+    /// and dot().
     double
     sum(const double part) const
     {
@@ -176,35 +177,35 @@ namespace Viscoplastic
   nearest_multiplier(const ContactLayout::Point &point,
                      const Tensor<1, 3>         &force);
 
-  /// The smallest motion of the node with this slip. (Rows of a map are not of
-  /// length 1 where pieces meet at an angle other than a right one.)
+  /// The displacement of the node of least norm with this slip. (Rows of `map`
+  /// need not have length 1 where pieces meet at an oblique angle.)
   Tensor<1, 3>
   motion_with_slip(const ContactLayout::Point &point, const Tensor<1, 2> &slip);
 
-  /// A face vector with, at each node, the smallest motion that has the largest
-  /// of the given slips (one a point) there.
+  /// Return the face vector of motion_with_slip() for the given slips (one per
+  /// point); of several points at a node the one that moves it farthest counts.
   Vector<double>
   face_motion(const ContactLayout             &face,
               const std::vector<Tensor<1, 2>> &slips);
 
 
-  /// What contact does in a step, point by point. Friction, with the slip s_c =
+  /// The state of contact in a step, by point. Friction, with the slip s_c =
   /// B_c (u - u_prev) - w_c against the foundation of the point, satisfies
   ///
   ///     |lambda_c| <= rho_c,   lambda_c = rho_c s_c/|s_c| where s_c != 0,
   ///
   /// and an obstacle s_c <= d_c, lambda_c >= 0, lambda_c (d_c - s_c) = 0, or,
-  /// where it gives way, lambda_c = p(s_c - d_c).
+  /// with normal compliance p, lambda_c = p(s_c - d_c).
   struct ContactState
   {
-    /// The bound rho_c >= 0; infinite for glued points. Of an obstacle the
-    /// distance d_c that is left at the beginning of the step.
+    /// The friction bound rho_c >= 0 (a force), infinite for glued points; of
+    /// an obstacle the gap d_c at the beginning of the step (a length).
     std::vector<double> bound;
     /// The increment w_c of the displacement of the foundation in the step,
     /// along the slip directions of the point; zero for obstacles.
     std::vector<Tensor<1, 2>> foundation_step;
     /// The slip s_c: the tangential increment of the displacement relative to
-    /// the foundation; of an obstacle the normal one.
+    /// the foundation; of an obstacle the normal increment.
     std::vector<Tensor<1, 2>> slip;
     /// The multiplier lambda_c: minus the tangential force on the body, or the
     /// force of the body on the obstacle.
@@ -212,7 +213,7 @@ namespace Viscoplastic
     /// The active set: whether the point sticks, or touches the obstacle.
     std::vector<bool> sticks;
 
-    /// At rest: all points stick, with zero multipliers.
+    /// Construct a state of rest: all points stick, with zero multipliers.
     explicit ContactState(std::vector<double> bounds = {})
       : bound(std::move(bounds))
       , foundation_step(bound.size())
@@ -268,8 +269,8 @@ namespace Viscoplastic
 
   /// How the truncated system treats the face: at each node the projector onto
   /// the directions that no sticking point blocks, and the stiffness against
-  /// turning the slip direction of slipping points (zero for one tangent) and
-  /// against going on into obstacles that give way.
+  /// turning the direction of slip (zero for one tangent) plus that of
+  /// compliant obstacles.
   struct FaceTruncation
   {
     std::vector<Tensor<2, 3>> projector, spring;
@@ -282,7 +283,8 @@ namespace Viscoplastic
     /// instead of tilt to equations.
     bool transposed = false;
 
-    /// Whether both constrain the same directions. Collective, as the next.
+    /// Whether both constrain the same directions. Collective, as are the next
+    /// four functions.
     bool
     blocks_as(const FaceTruncation &other, const ContactLayout &face) const
     {
@@ -295,7 +297,7 @@ namespace Viscoplastic
       return !face.any(projector != other.projector || spring != other.spring);
     }
 
-    /// Whether another one makes the same system.
+    /// Whether @p other gives the same linear system, including tilts.
     bool
     equals(const FaceTruncation &other, const ContactLayout &face) const
     {
@@ -312,7 +314,7 @@ namespace Viscoplastic
       return face.any(here);
     }
 
-    /// Throw ExcMessage if it is that of another face.
+    /// Throw ExcMessage if this is the truncation of another face.
     void
     check_belongs_to(const ContactLayout &face) const
     {
@@ -327,15 +329,15 @@ namespace Viscoplastic
     void
     project(const ContactLayout &face, Vector<double> &x) const
     {
-      // Twice: what rounding leaves beside the space of large forces that are
-      // blocked, no iteration on the space takes away.
+      // Project twice: rounding of large blocked forces would leave a part
+      // outside the truncated space, which no iteration in this space removes.
       for (unsigned int n = 0; n < face.n_nodes(); ++n)
         face.set_node_values(
           projector[n] * (projector[n] * face.node_values(x, n)), n, x);
     }
 
-    /// x := tilt x of equations x, and x := tilt^T x of motions if the system
-    /// is transposed.
+    /// x := tilt x for equations (residuals) x, or x := tilt^T x for motions x
+    /// if the system is transposed.
     void
     tilt_equations(const ContactLayout &face, Vector<double> &x) const
     {

@@ -27,9 +27,9 @@ namespace Viscoplastic
                        const unsigned int  n_tangents,
                        const double        bound);
 
-  /// Solve for the multiplier of one point @p p, friction or obstacle, and
-  /// whether it sticks or is in contact, of a node that moves by @p start + @p
-  /// flexibility (@p force - map^T multiplier).
+  /// Solve the contact law of the single point @p p, friction or obstacle
+  /// (`sticks`: it touches), whose node moves by @p start + @p flexibility (@p
+  /// force - map^T multiplier).
   PointSolution
   solve_point(const ContactLayout &face,
               unsigned int         p,
@@ -38,12 +38,13 @@ namespace Viscoplastic
               const ContactState  &state,
               const Tensor<1, 3>  &start = {});
 
-  /// Admissible multipliers that fit @p residual = l - A u on the face best and
-  /// obey the laws exactly: rho s/|s| where slipping, zero off an obstacle,
-  /// that of its compliance where it gives way, the residual clipped where
-  /// sticking and touching. Where pieces meet, the fit may leave a choice
-  /// (NodeForces). Gives the face vector of their forces, too. With a @p law
-  /// bounds are those of the pressures, and are set.
+  /// Set the multipliers of @p state to the admissible ones that fit @p
+  /// residual = l - A u on the face best and obey the laws exactly: rho s/|s|
+  /// where slipping, zero at open obstacles, the force of the law at compliant
+  /// ones, the residual clipped to the admissible set where sticking or
+  /// touching. Where pieces meet, the fit need not be unique (NodeForces). Sets
+  /// @p force to the face vector of their forces, and with a @p law the bounds
+  /// to those of the pressures.
   void
   fit_multipliers(const ContactLayout       &face,
                   const Vector<double>      &residual,
@@ -52,10 +53,10 @@ namespace Viscoplastic
                   const CoulombCoefficients *law = nullptr);
 
 
-  /// The nonlinear Gauss-Seidel step at one node: minimize J over the node's
-  /// components, within its obstacles. By duality, block by block over the
-  /// node's points; exact at once for one obstacle and a single point of
-  /// friction, i.e. away from corners.
+  /// Nonlinear Gauss-Seidel step at one node: return the displacement that
+  /// minimizes J within the node's obstacles. Solved by duality, point by
+  /// point: exact for one friction point with one obstacle, i.e., away from
+  /// corners.
   Tensor<1, 3>
   relax_node(const ContactLayout &face,
              const unsigned int   node,
@@ -64,27 +65,28 @@ namespace Viscoplastic
              ContactState        &state);
 
 
-  /// Multipliers that bound the error: those of fit_multipliers() but for
-  /// the points listed.
+  /// Admissible multipliers for the error bound: those of fit_multipliers()
+  /// except for the points in `replaced`.
   struct Certificate
   {
     Vector<double> force;
-    /// sum of rho |s| - lambda . s over all ranks, an energy.
+    /// The complementarity defect over all ranks, an energy: the sum of rho |s|
+    /// - lambda . s and of NormalCompliance::defect().
     double                                             defect = 0.;
     std::vector<std::pair<unsigned int, Tensor<1, 2>>> replaced;
   };
 
-  /// A point that has hardly begun to slip in the plane has a direction s/|s|
-  /// blurred by rounding: its multiplier rho s/|s| misses the residual by more
-  /// than its slip is worth. There the clipped residual is the better
-  /// multiplier, at the price of a small defect of complementarity. A miss of
-  /// more than 1e-5 of the bound is not rounding, unless the slip is as small
-  /// as
-  /// @p rounding, an error in the energy norm, makes it. Where pieces meet, one
-  /// may push along what the other holds with forces far above those of the
-  /// body: multipliers are turned by up to 1e-9 there. An obstacle that gives
-  /// way gets a multiplier between its force and the residual, the nearer to
-  /// the latter the stiffer it is. Collective.
+  /// Make the certificate for the multipliers of @p state, whose forces are @p
+  /// force, but replace multipliers that are blurred by rounding: (1) A point
+  /// with two tangents that has hardly begun to slip has an inaccurate
+  /// direction s/|s|, so that rho s/|s| misses the residual by more than its
+  /// slip is worth; the clipped residual is better, at the price of a small
+  /// complementarity defect. A misfit above 1e-5 of the bound is not rounding
+  /// unless the slip is as small as @p rounding, an error in the energy norm,
+  /// makes it. (2) Where pieces meet, forces may be far above those of the
+  /// body: they are turned by up to 1e-9. (3) A compliant obstacle gets a
+  /// multiplier between its force and the residual, the closer to the latter
+  /// the stiffer it is. Collective.
   Certificate
   certify(const ContactLayout             &face,
           const Vector<double>            &residual,
@@ -94,17 +96,18 @@ namespace Viscoplastic
           double                           rounding);
 
 
-  /// How the linear system of a Newton step treats the face: sticking points
-  /// are held, slipping ones resist turning, obstacles that give way are
-  /// springs. @p inverse_diagonal: of the blocks of the face matrix; a spring
-  /// that is @p stiffest times as stiff is as good as stick.
+  /// Return how the linear system of a Newton step treats the face: sticking
+  /// points and touched rigid obstacles are held, slipping points resist
+  /// turning, compliant obstacles are springs, of at most @p stiffest times the
+  /// stiffness of the node by @p inverse_diagonal (of the face matrix).
   FaceTruncation
   make_truncation(const ContactLayout             &face,
                   const ContactState              &state,
                   const std::vector<Tensor<2, 3>> &inverse_diagonal,
                   const double                     stiffest = 1e10);
 
-  /// Stiffness against turning slip: rho/|s| (I - s s^T/|s|^2), limited.
+  /// The stiffness of a node against turning the direction of slip, rho/|s| (I
+  /// - s s^T/|s|^2), limited as in make_truncation().
   Tensor<2, 3>
   turning_spring(const ContactLayout             &face,
                  const unsigned int               node,

@@ -14,10 +14,9 @@ namespace Viscoplastic
     /// Corrections of the active set iteration.
     unsigned int iterations        = 0;
     unsigned int linear_iterations = 0;
-    /// Solves for a fixed point of the friction bounds, and the largest factor
-    /// by which one has reduced their change; where bounds are solved for with
-    /// the step, the largest part of its stiffness that slip has lost to the
-    /// change of its own bounds.
+    /// Solves in a fixed-point iteration for the friction bounds, and the
+    /// largest ratio of successive changes of bounds; with Coulomb's law in the
+    /// step itself, CoulombBounds::n_moves() and CoulombBounds::largest_loss().
     unsigned int bound_iterations = 0;
     double       contraction      = 0.;
     /// A sentence on why the solution may not be unique; empty if nothing
@@ -36,8 +35,8 @@ namespace Viscoplastic
     double rounding_error = 0.;
     /// The relative tolerance of the solve; zero where nothing was solved.
     double tolerance = 0.;
-    /// Wall time of the solve, and what of it the same solve would have taken
-    /// without contact.
+    /// Wall time of the solve, and an estimate of what the same solve would
+    /// have taken without contact.
     double seconds = 0., plain_seconds = 0.;
 
     /// Add the counts and times of an earlier solve of the same step.

@@ -8,31 +8,28 @@
 
 namespace Viscoplastic
 {
-  /// What is known before a solve, in the energy norm: its rounding error and
-  /// the norm of the last solution.
+  /// Scales in the energy norm that are known before a solve.
   struct SolutionScale
   {
-    /// An error that rounding leaves in any case, and that counts as none: of
-    /// a body that moves without strain, or whose loads balance, nothing else
-    /// remains.
+    /// An error that rounding leaves in any case, and that counts as zero. It
+    /// is all that remains if a body moves without strain or its loads cancel.
     double rounding_error = 0.;
-    /// The norm of the solution of the step before. A body that is relieved
-    /// of all loads has none in the end, and its error is relative to what it
-    /// had.
+    /// The norm of the solution of the step before: errors are relative to it
+    /// where a body is relieved of all loads, so that its solution vanishes.
     double former_size = 0.;
   };
 
 
-  /// One solve for a displacement u under way, as solvers of contact see it:
-  /// the energy 1/2 a(u,u) - l(u) with everything but contact. It owns what it
-  /// needs of l and u; BulkSolver::begin() makes it.
+  /// A solve for a displacement u in progress, as contact solvers see it: the
+  /// energy 1/2 a(u,u) - l(u) of everything but contact. It owns the data that
+  /// it needs of l and u; BulkSolver::begin() creates it.
   ///
   /// A contact solver moves the displacement by the calls below and sees only
   /// its values on the face, so it needs neither a mesh nor distributed
   /// vectors.
   ///
-  /// All calls are collective. Face vectors are of the nodes of this rank, all
-  /// other results the same on all ranks.
+  /// All calls are collective. Face vectors have the nodes of this rank, all
+  /// other results are the same on all ranks.
   class ContactSolve
   {
   public:
@@ -49,7 +46,7 @@ namespace Viscoplastic
     virtual ~ContactSolve() = default;
 
     const bool is_exact;
-    /// Solves may raise its rounding error.
+    /// The contact solver may raise `scale.rounding_error`.
     SolutionScale scale;
 
     /// The matrix F of the face for Gauss-Seidel sweeps: move_face(w) changes
@@ -68,9 +65,8 @@ namespace Viscoplastic
     virtual void
     move_face(const Vector<double> &change) = 0;
 
-    /// Set which points stick or slip in the calls below. Without @p
-    /// may_rebuild the truncation is only tried, and a solver keeps its
-    /// preconditioner.
+    /// Set the truncated space and springs for the calls below. Without @p
+    /// may_rebuild the truncation is temporary, and preconditioners are kept.
     virtual void
     set_truncation(const FaceTruncation &truncation,
                    const bool            may_rebuild = true) = 0;
@@ -81,9 +77,9 @@ namespace Viscoplastic
     virtual double
     dual_norm(const Vector<double> &force) = 0;
 
-    /// dual_norm() without the quality of a preconditioner in it, for the
-    /// final word; adds its iterations to @p iterations. Of a norm above @p
-    /// limit something between both may be all that is found out.
+    /// dual_norm() independent of the quality of a preconditioner, for the
+    /// final decision; adds its iterations to @p iterations. If the norm is
+    /// above @p limit, any value between the two may be returned.
     virtual double
     confirmed_dual_norm(const Vector<double> &force,
                         const double /*limit*/,
@@ -92,16 +88,14 @@ namespace Viscoplastic
       return dual_norm(force);
     }
 
-    /// What dual_norm() makes of l - A u if each of its rows is off by a unit
-    /// of rounding of its terms, this way or that by chance. Flat cells,
-    /// stiffness that differs and bodies next to incompressible make much of
-    /// it. No solver can do better, nor are the entries of A any better known.
-    /// As dear as some solves.
+    /// The dual_norm() of an error of l - A u that is one unit of rounding of
+    /// the terms of each row, with random signs: a limit for the accuracy of
+    /// any solver. It is large for flat cells, strongly varying stiffness and
+    /// nearly incompressible bodies. Costs as much as a few solves.
     virtual double
     rounding_of_residual() = 0;
 
-    /// The energy norm of the present displacement. Zero for rigid
-    /// translations.
+    /// The energy norm of the displacement; zero for rigid translations.
     virtual double
     energy_norm() const = 0;
 
@@ -114,7 +108,7 @@ namespace Viscoplastic
 
     /// Solve (tilt A + springs) w = tilt (l - A u - force) on the truncated
     /// space to the relative accuracy @p tolerance; returns the face part in @p
-    /// w and the number of linear iterations. Of a transposed truncation, w =
+    /// w and the number of linear iterations. For a transposed truncation, w =
     /// tilt^T v with (A tilt^T + springs) v = l - A u - force.
     virtual unsigned int
     correct(const Vector<double> &force,
@@ -129,7 +123,8 @@ namespace Viscoplastic
       Vector<double> response = {};
     };
 
-    /// Replace the face part of the correction by @p w and prepare its use.
+    /// Replace the face part of the last correction by @p w, and return the
+    /// terms of the line search along it.
     virtual SearchTerms
     search_terms(const Vector<double> &w) = 0;
 
@@ -137,8 +132,8 @@ namespace Viscoplastic
     virtual void
     take_step(const double step) = 0;
 
-    /// Complete the displacement given at the beginning, and end. Returns the
-    /// linear iterations this took.
+    /// Complete the displacement passed to BulkSolver::begin(), and end the
+    /// solve. Returns the number of linear iterations that this took.
     virtual unsigned int
     finish()
     {
@@ -154,7 +149,7 @@ namespace Viscoplastic
     }
 
     /// The norm of dual_norm() on the truncated space alone, which is no
-    /// larger. It costs nothing where correct() follows with the same force.
+    /// larger. It costs nothing if correct() follows with the same force.
     virtual double
     truncated_dual_norm(const Vector<double> &force)
     {
@@ -166,15 +161,14 @@ namespace Viscoplastic
   };
 
 
-  /// Solve (A + springs) u = l - force with the sets of a @p truncation, from
-  /// where @p solve is, and finish it. Corrections are solved to the relative
-  /// accuracy @p reduction, which is one of the start: where that is larger in
-  /// the energy norm than @p enough solutions, a correction is corrected in its
-  /// turn, a few times at most, and nobody has measured what is left then: for
-  /// preconditioners, and for what is solved for again or whose residual counts
-  /// as an error. A truncation that is not to be kept leaves
-  /// preconditioners as they are (see ContactSolve::set_truncation()). Returns
-  /// the linear iterations of the corrections.
+  /// Solve (A + springs) u = l - force with the active sets of a @p truncation,
+  /// starting from the displacement of @p solve, and finish that solve. Each
+  /// correction is solved to the relative accuracy @p reduction; as long as it
+  /// is larger in the energy norm than @p enough times the solution, another
+  /// one follows, a few at most. The remaining error is not measured: use this
+  /// in preconditioners, or where one solves again or counts the residual as an
+  /// error. Preconditioners are kept unless @p is_kept (see
+  /// ContactSolve::set_truncation()). Returns the linear iterations.
   unsigned int
   solve_truncated(ContactSolve         &solve,
                   const ContactLayout  &face,

@@ -10,38 +10,39 @@ namespace Viscoplastic
 {
   /// Minimizes the energy of one step,
   ///
-  ///     J(u) = 1/2 a(u,u) - l(u) + sum_c rho_c |s_c|,   s_c = B_c (u - u_prev)
-  /// - w_c,
+  ///     J(u) = 1/2 a(u,u) - l(u) + sum_c rho_c |s_c|,
+  ///     s_c = B_c (u - u_prev) - w_c,
   ///
   /// where s_c <= d_c at obstacles (unilateral contact, Signorini's
   /// conditions), by a primal-dual active set iteration that cannot cycle: (1)
   /// nonlinear Gauss-Seidel over the face nodes, which minimizes J node by
-  /// node, decides who sticks and in which direction who slips; (2) a linear
-  /// solve on the truncated space with the tangent stiffness of turning slip is
-  /// a semismooth Newton step; (3) increments that would reverse a slip stop at
-  /// stick, those that would enter an obstacle stop there, and a line search
-  /// minimizes J along the rest. Where that is no descent, the reversing points
-  /// are brought to rest first, or the correction is taken as it is, which
-  /// always descends. J never increases, so no set comes twice (compare
-  /// Kornhuber's monotone multigrid and TNNMG by Graeser and Sander, where (1)
-  /// covers all unknowns; here the linear solve covers the bulk).
+  /// node, decides which points stick and in which direction the others slip;
+  /// (2) a linear solve on the truncated space with the tangent stiffness of
+  /// turning slip is a semismooth Newton step; (3) increments that would
+  /// reverse a slip stop at stick, those that would enter an obstacle stop
+  /// there, and a line search minimizes J along the rest. Where that gains
+  /// little, the reversing points are brought to rest first, or the correction
+  /// is taken unmodified, which is always a descent direction. J never
+  /// increases, so no set comes twice (compare Kornhuber's monotone multigrid
+  /// and TNNMG by Graeser and Sander, where (1) covers all unknowns; here the
+  /// linear solve covers the bulk).
   ///
   /// The iteration stops when the duality gap bounds the error: with
   /// multipliers in their balls, pressures p >= 0, the remaining residual R and
   /// the defect eps = sum rho |s| - lambda . s + sum p (d - s) of
-  /// complementarity, gap = 1/2 |R|^2 + eps in
-  /// the dual energy norm and |error| <= (|R| + sqrt(|R|^2 + 4 eps))/2. The
-  /// multipliers satisfy the laws of contact exactly (eps = 0), except at
-  /// points that have hardly begun to slip.
+  /// complementarity, gap = 1/2 |R|^2 + eps in the dual energy norm and |error|
+  /// <= (|R| + sqrt(|R|^2 + 4 eps))/2. The multipliers satisfy the laws of
+  /// contact exactly (eps = 0), except at points that have hardly begun to
+  /// slip.
   ///
-  /// With Coulomb's law of the step's own pressure there is no J. Each of the
-  /// phases is that of given bounds all the same: (1) nodes obey the law
-  /// itself, (2) the linear system knows that bounds change with pressures
-  /// (CoulombLaw), and (3) J is that of the bounds which (2) has predicted, for
-  /// which its correction is a Newton step. So the iteration converges as fast
-  /// as with given bounds, but nothing says that it must: where its error does
-  /// not fall, bounds rest for a while and follow at a distance
-  /// (CoulombBounds). What stops it is in error_with_bounds().
+  /// With Coulomb's law for the pressure of the step itself there is no J, but
+  /// the phases stay: (1) nodes obey the law itself, (2) the linear system
+  /// contains the change of bounds with pressures (CoulombLaw), and (3) J is
+  /// that of the bounds predicted by (2), for which the correction is a Newton
+  /// step. Convergence is as fast as with given bounds, but not guaranteed:
+  /// where the error does not fall, bounds are held for a while and then
+  /// relaxed toward the pressures (CoulombBounds).
+  /// CoulombBounds::error_with_bounds() has the stopping criterion.
   class ContactSolver
   {
   public:
@@ -52,13 +53,12 @@ namespace Viscoplastic
     /// bounds, and the sets and multipliers to start from, which become those
     /// of the solution; @p tolerance: the relative error at which to stop.
     ///
-    /// The report tells what a solve without contact would have taken from the
-    /// same start, from what this one has shown: of an exact solver, the
-    /// completion of the displacement, to which the caller adds its beginning;
-    /// of an iterative one the seconds a decade of its corrections, times the
-    /// decades from the first error to the tolerance. Nothing is solved for it.
+    /// The report estimates the time of a solve without contact: for an exact
+    /// solver, that of completing the displacement, to which the caller adds
+    /// that of its beginning; for an iterative one, the seconds per decade of
+    /// corrections times the decades from the first error to the tolerance.
     ///
-    /// With a @p law, bounds are those of the pressures that come out.
+    /// With a @p law, the friction bounds are those of the computed pressures.
     ///
     /// Collective. Throws ExcMessage when the iteration is exhausted or a value
     /// is not finite: there is no unconverged result.

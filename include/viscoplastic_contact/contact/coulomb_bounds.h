@@ -11,10 +11,10 @@
 
 namespace Viscoplastic
 {
-  /// The relaxation factor of friction bounds that follow what they miss, by
-  /// Aitken's rule (Irons and Tuck, Int. J. Numer. Methods Eng. 1, 1969): after
-  /// a move by @p factor times @p last_missing they miss @p missing. Nothing
-  /// where these are equal. Collective.
+  /// Return the relaxation factor by Aitken's rule (Irons and Tuck, Int. J.
+  /// Numer. Methods Eng. 1, 1969) for a fixed-point iteration of friction
+  /// bounds, whose residual is @p missing after a move by @p factor times the
+  /// residual @p last_missing. Nothing if both are equal. Collective.
   std::optional<double>
   aitken_factor(const ContactLayout       &face,
                 const double               factor,
@@ -24,16 +24,17 @@ namespace Viscoplastic
 
 
   /// The bounds of Coulomb's law in the iterations of a contact solver. As a
-  /// rule they follow the pressures at once: nodes are solved with the law
-  /// itself, and the linear system knows that bounds change with pressures.
-  /// That is a Newton method, which need not converge. Where the error does not
-  /// fall, bounds rest until the step is solved for them, and are moved towards
-  /// those of the pressures by the share that two such moves tell (Aitken),
-  /// until they are near enough to follow again. All calls are collective.
+  /// rule they follow the pressures (Newton's method): nodes are solved with
+  /// the law itself, and the linear system contains the change of bounds with
+  /// pressures. Where the error does not fall, bounds rest: they are held until
+  /// the step is solved for them, and then moved toward those of the pressures
+  /// by a share (aitken_factor()), until they are near enough to follow again.
+  /// All calls are collective.
   class CoulombBounds
   {
   public:
-    /// @p inverse_diagonal: of the face matrix, by node. All stay in use.
+    /// @p inverse_diagonal: the inverse diagonal blocks of the face matrix, by
+    /// node. Keeps references to all arguments.
     CoulombBounds(const CoulombLaw                &law,
                   const ContactLayout             &face,
                   const std::vector<Tensor<2, 3>> &inverse_diagonal);
@@ -45,9 +46,9 @@ namespace Viscoplastic
       return !rest;
     }
 
-    /// Whether the sweeps solve nodes with the law itself. Not near a solution,
-    /// and not after Newton's method has stalled: of several solutions at a
-    /// node, sweeps may choose the one that is none of the step.
+    /// Whether the sweeps solve nodes with the law itself. They do not near a
+    /// known solution or after Newton's method has stalled: of several
+    /// solutions at a node, they may choose one that does not solve the step.
     bool
     nodes_obey_law() const
     {
@@ -64,7 +65,8 @@ namespace Viscoplastic
     void
     measure(const ContactState &state);
 
-    /// Let bounds be those to which the correction @p w of the face leads.
+    /// Set the bounds of @p state to those predicted after the correction @p w
+    /// of the face, and update largest_loss().
     void
     predict(ContactSolve         &bulk,
             const FaceTruncation &truncation,
@@ -72,10 +74,9 @@ namespace Viscoplastic
             const Vector<double> &w,
             ContactState         &state);
 
-    /// The largest part of the stiffness against a correction so far that slip
-    /// has lost to the change of its own bounds. A solution at which this is
-    /// less than 1 for all corrections that its sets leave free is the only one
-    /// near it.
+    /// The largest part of the stiffness along any correction so far that slip
+    /// has lost to the change of its own bounds. If it is less than 1 for all
+    /// corrections of the truncated space, the solution is locally unique.
     double
     largest_loss() const
     {
@@ -90,43 +91,42 @@ namespace Viscoplastic
       return doubts;
     }
 
-    /// Whether the system itself is worth a look, too: that is what corrections
-    /// so far tell, or friction that may be as large as the pressure.
+    /// Whether the determinant of the linear system should be examined: for a
+    /// largest_loss() from 1/2 or friction coefficients from 1 on.
     bool
     may_be_singular() const
     {
       return loss >= 0.5 || largest_coefficient >= 1.;
     }
 
-    /// The error of a step whose error for the present bounds is at most @p
-    /// error. The forces of the solution for these differ from those here by at
-    /// most twice as much in the dual norm; bounds follow with the coefficient
-    /// of friction, and what bounds at rest miss comes on top. (That forces
-    /// along and across the foundation weigh alike in this norm, and that
-    /// bounds do not follow further, is true up to a factor for a small
-    /// coefficient.)
+    /// An estimate of the error of a step whose error for the present bounds is
+    /// at most @p error. Contact forces then have an error of at most 2 error
+    /// in the dual norm, and bounds of the friction coefficient times that; the
+    /// misfit of bounds at rest is added. (Assumes that normal and tangential
+    /// forces weigh alike in this norm, and that a change of bounds causes no
+    /// further one: true up to a factor for a small coefficient.)
     double
     error_with_bounds(const double error) const
     {
       return (1. + 2. * largest_coefficient) * error + missed;
     }
 
-    /// Decide whether bounds go on to follow or to rest, and move them if they
-    /// are due, from the error with bounds after @p n_corrections. Returns
-    /// whether something has changed.
+    /// Decide whether bounds follow or rest, and move resting ones if the step
+    /// is solved for them. @p error: error_with_bounds() after @p
+    /// n_corrections. Returns whether anything has changed.
     bool
     damp(const double       error,
          const unsigned int n_corrections,
          ContactState      &state);
 
-    /// The number of moves of bounds that rest in between.
+    /// The number of moves of bounds at rest.
     unsigned int
     n_moves() const
     {
       return moves;
     }
 
-    /// Why there may be no solution, and where it is missed most.
+    /// Why there may be no solution, and where bounds fit pressures worst.
     std::string
     failure() const;
 
@@ -140,7 +140,8 @@ namespace Viscoplastic
     const std::vector<Tensor<2, 3>> &inverse_diagonal;
     const double                     largest_coefficient;
 
-    /// Bounds of the present pressures minus bounds, by point, and as an error.
+    /// Bounds of the present pressures minus bounds, by point, and the norm of
+    /// this misfit as an error.
     std::vector<double> missing;
     double              missed = 0.;
 
@@ -149,12 +150,11 @@ namespace Viscoplastic
 
     bool         rest     = false;
     unsigned int n_stalls = 0, moves = 0;
-    /// The error that counts as progress, and the corrections then.
+    /// The error when it was last halved, and the number of corrections then.
     double       least_error   = std::numeric_limits<double>::max();
     unsigned int last_progress = 0;
-    /// Whether they have moved since, what has been missed at the first move
-    /// and at the last one, and the share of it that the last one has made up
-    /// for.
+    /// For bounds at rest: whether they have moved, `missed` at the first move,
+    /// `missing` at the last one, and the share of it by which they moved.
     bool                has_moved    = false;
     double              first_missed = 0.;
     std::vector<double> last_missing;

@@ -11,19 +11,18 @@
 
 namespace Viscoplastic
 {
-  /// Coulomb's law with the pressure of the step itself. What is here makes a
-  /// solver of given bounds one of this law: a Gauss-Seidel step at a node, and
-  /// how the linear system of a Newton step knows that bounds change with the
-  /// pressure.
+  /// Coulomb's law with the pressure of the step itself. It supplies what a
+  /// contact solver for given bounds needs in addition: a Gauss-Seidel step at
+  /// a node, and the change of bounds with the pressure in the linear system of
+  /// a Newton step.
   struct CoulombLaw : CoulombCoefficients
   {
     /// The position of a node in words, for messages.
     std::function<std::string(unsigned int)> place;
 
-    /// relax_node() with the bounds of the pressures that come out, which are
-    /// set. Where pieces meet, one after the other obeys the law, again and
-    /// again, which need not settle: if it @p must_settle, then nothing comes
-    /// out, and the state stays.
+    /// relax_node() with the bounds of the resulting pressures, which are set
+    /// in @p state. Where pieces meet, they are solved in turn, which need not
+    /// converge: with @p must_settle, nothing is returned or changed then.
     std::optional<Tensor<1, 3>>
     relax_node(const ContactLayout &face,
                const unsigned int   node,
@@ -32,12 +31,12 @@ namespace Viscoplastic
                ContactState        &state,
                bool                 must_settle) const;
 
-    /// A slipping point has lambda = g d + mu p d, d = s/|s|, with the pressure
-    /// p = c . r of the same equation: of the residual r of its node, what
-    /// r - mu (c . r) d leaves is zero in the directions that are free (c is
-    /// the unit normal; where pieces meet, NodeForces has it). Adds the
-    /// matrices I - mu d c^T of such nodes to @p truncation, which
-    /// make_truncation() has made of the other arguments.
+    /// Add the matrices I - mu d c^T of nodes that slip to @p truncation, which
+    /// make_truncation() has made of the other arguments. A slipping point has
+    /// lambda = g d + mu p d, d = s/|s|, with the pressure p = c . r of the
+    /// residual r of its node, so that r - mu (c . r) d vanishes in the free
+    /// directions but for g d. Here c is the unit normal or, where pieces meet,
+    /// a vector of NodeForces::pressures_of_force().
     void
     tilt(const ContactLayout             &face,
          const ContactState              &state,
@@ -45,8 +44,8 @@ namespace Viscoplastic
          FaceTruncation                  &truncation,
          double                           stiffest = 1e10) const;
 
-    /// Let bounds be those of the pressures in the nodes' forces @p residual,
-    /// wherever nodes can move.
+    /// Set bounds to those of the pressures that follow from the node forces @p
+    /// residual, at nodes that can move.
     void
     predict_bounds(const ContactLayout  &face,
                    const Vector<double> &residual,
@@ -68,13 +67,13 @@ namespace Viscoplastic
     largest_coefficient(const ContactLayout &face) const;
 
   private:
-    /// The obstacle whose pressure most of a point's bound follows, across it;
-    /// an invalid number if there is none.
+    /// The obstacle orthogonal to a friction point whose pressure has the
+    /// largest coefficient in its bound; an invalid number if there is none.
     unsigned int
     own_obstacle(const ContactLayout &face, const unsigned int point) const;
 
-    /// The pressure of this obstacle @p o of @p point if it alone held the node
-    /// with it (coulomb_pressure()).
+    /// The pressure of obstacle @p o if only it and the friction @p point held
+    /// their node (coulomb_pressure()).
     double
     own_pressure(const ContactLayout &face,
                  const unsigned int   point,
@@ -86,10 +85,10 @@ namespace Viscoplastic
 
 
 
-  /// A node by itself on a foundation with Coulomb's law: without contact it
-  /// would move by `free_motion`, first along the normal of the foundation as
-  /// far as it is beyond it, then along it; forces against these motions take
-  /// `flexibility` times as much of it.
+  /// The problem of a single node on a foundation with Coulomb's law, with
+  /// component 0 along the normal and the others along the foundation. Without
+  /// contact forces the node has the penetration and slip `free_motion`; forces
+  /// f on the foundation reduce them by `flexibility` f.
   struct CoulombNode
   {
     Tensor<2, 3> flexibility;
@@ -102,17 +101,19 @@ namespace Viscoplastic
     double present;
   };
 
-  /// The force p of the node on the foundation. Friction of a given p is known
-  /// in closed form (solve_friction_point()); then p is the root of a scalar
-  /// function, the penetration that is left at p less that at which the
-  /// foundation presses by p. There is always a solution: for p = 0 the node is
-  /// beyond the foundation if it is not open, and where p is large friction
-  /// holds it. In 2D on a rigid foundation the root of slip is
+  /// Return the normal force p of the node on the foundation. Friction follows
+  /// from p (solve_friction_point()), so p is the root of a scalar function:
+  /// the penetration that remains at p minus the one at which the foundation
+  /// presses with p. A solution always exists: at p = 0 the node penetrates
+  /// unless it is open, and at large p friction holds it. With q the free
+  /// motion, W the flexibility and g the given bound, a slipping node in 2D on
+  /// a rigid foundation has
   ///
   ///     p = (q_n -+ W_nt g)/(W_nn +- mu W_nt).
   ///
-  /// For a large mu a node that could be open may be held, or slip, as well.
-  /// Then it stays what it is: touching if it touches now, otherwise open.
+  /// For large mu a node that can be open may also have a solution in contact.
+  /// It then keeps its state: touching if it touches at present, otherwise
+  /// open.
   double
   coulomb_pressure(const CoulombNode &node);
 } // namespace Viscoplastic

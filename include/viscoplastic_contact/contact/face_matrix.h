@@ -7,28 +7,29 @@
 
 namespace Viscoplastic
 {
-  /// The symmetric positive definite matrix by which the face reacts to changes
-  /// of single nodes: what nonlinear Gauss-Seidel sweeps over Gamma_3 need.
+  /// The symmetric positive definite matrix F of nonlinear Gauss-Seidel sweeps
+  /// over Gamma_3, by which the residual of the face reacts to changes of
+  /// single nodes.
   ///
-  /// A sweep goes through the nodes stage by stage. Nodes of one stage that
-  /// belong to different ranks do not couple, so that all ranks together do
-  /// what one would do alone, node after node.
+  /// A sweep goes through the nodes stage by stage. Nodes of one stage on
+  /// different ranks do not couple, so that a parallel sweep equals a
+  /// sequential one.
   class FaceMatrix
   {
   public:
-    /// Of nodes that are all swept in one stage.
+    /// Construct a matrix whose nodes are all swept in one stage.
     explicit FaceMatrix(const ContactLayout &face);
     virtual ~FaceMatrix() = default;
 
-    /// The nodes of this rank in each stage, in the order of a sweep; as many
-    /// stages on all ranks.
+    /// The nodes of this rank in each stage, in the order of a sweep. All ranks
+    /// have the same number of stages.
     const std::vector<std::vector<unsigned int>> &
     stages() const
     {
       return nodes_of_stage;
     }
 
-    /// Diagonal block of a node, padded by the identity.
+    /// Diagonal block of a node, padded to 3 x 3 by pad_block().
     virtual Tensor<2, 3>
     diagonal_block(const unsigned int node) const = 0;
 

@@ -10,8 +10,8 @@
 namespace Viscoplastic
 {
   // The energy J of a step has kinks: where slip changes sides, and where a
-  // node meets an obstacle. What follows searches along corrections w of the
-  // face with them in view. All calls are collective.
+  // node meets an obstacle. These functions search along corrections w of the
+  // face and take the kinks into account. All are collective.
 
   /// A step along a correction, and what it does to J.
   struct SearchResult
@@ -30,10 +30,10 @@ namespace Viscoplastic
                const Vector<double> &w);
 
 
-  /// How many times the change @p w of the face, after which its state is
-  /// @p state, can be repeated until J has its minimum along it, or an obstacle
-  /// that is not touched yet ends it. @p terms: the descent of J after the
-  /// change and the curvature of the energy of the body.
+  /// Return how many times the change @p w of the face can be repeated from @p
+  /// state until J has its minimum along @p w or an obstacle that is not
+  /// touched yet is met. @p terms: minus the slope of J at @p state, and the
+  /// curvature of the bulk energy.
   double
   repetitions(const ContactSolve::SearchTerms &terms,
               const ContactLayout             &face,
@@ -41,10 +41,10 @@ namespace Viscoplastic
               const Vector<double>            &w);
 
 
-  /// Shorten a correction @p w where it meets kinks of J: slip that would
-  /// change sides comes to rest, a way into an obstacle ends at it. At corners,
-  /// where points share a node, the line search alone decides. @p x: the
-  /// increment. Returns whether there is such a node.
+  /// Shorten a correction @p w at nodes that it would take beyond a kink of J:
+  /// slip that would reverse comes to rest, motion into an obstacle ends at it.
+  /// Corners, where points share a node, are left to the line search. @p x: the
+  /// increment of the face. Returns whether any node stops.
   bool
   stop_at_kinks(const ContactLayout  &face,
                 const ContactState   &state,
@@ -52,9 +52,10 @@ namespace Viscoplastic
                 Vector<double>       &w);
 
 
-  /// Bring the nodes that the correction @p w would take beyond a kink of J
-  /// there: the increment @p x and the sets of @p state change, @p change is
-  /// set to that of the face. Returns the change of j.
+  /// Move the nodes that the correction @p w would take beyond a kink of J to
+  /// that kink: updates the increment @p x and the sets of @p state, and sets
+  /// @p change to the change of @p x. Returns the change of the friction
+  /// functional j.
   double
   bring_to_kinks(const ContactLayout  &face,
                  const Vector<double> &w,
@@ -71,12 +72,11 @@ namespace Viscoplastic
     unsigned int   linear_iterations;
   };
 
-  /// Bring the nodes that the correction @p w takes beyond a kink of J there,
-  /// solve with them held to the relative accuracy @p tolerance (or what the
-  /// stop asks for), and search along that correction. If J is lower
-  /// then, the stop is made (@p x and @p state change) and the step is
-  /// returned, to be taken; otherwise everything is as before but the
-  /// correction.
+  /// Call bring_to_kinks(), solve with these nodes held to the relative
+  /// accuracy @p tolerance (or less, if the move has enlarged the residual),
+  /// and search along the new correction. If J is lower then, the step is
+  /// returned for the caller to take, and @p x and @p state stay changed;
+  /// otherwise everything but the correction of @p bulk is restored.
   std::optional<KinkStep>
   step_from_kinks(ContactSolve                    &bulk,
                   const ContactLayout             &face,
@@ -88,11 +88,11 @@ namespace Viscoplastic
                   ContactState                    &state);
 
 
-  /// The correction with @p truncation, and the search along it. Where an
-  /// obstacle that a node does not touch ends it before the part @p least, such
-  /// nodes are held at the distance that they have, and the solve is repeated
-  /// until nothing else is in the way or J gets no lower. @p force: what is to
-  /// be corrected.
+  /// Solve for the correction with @p truncation, and search along it. If
+  /// obstacles that are not touched yet limit the step to less than @p least,
+  /// their nodes are held at the present distance, and the solve is repeated
+  /// until the step is longer or J gets no lower. @p force: the face vector of
+  /// contact forces in ContactSolve::correct().
   KinkStep
   step_past_obstacles(ContactSolve                    &bulk,
                       const ContactLayout             &face,

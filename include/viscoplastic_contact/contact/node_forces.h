@@ -35,18 +35,18 @@ namespace Viscoplastic
 
 
 
-  /// The forces of the points at a node where pieces meet. What holds the node
-  /// makes up for a force as far as the laws of its points allow: pressures
-  /// p >= 0, friction in the ball |lambda| <= rho, or with Coulomb's law in the
-  /// cone |lambda| <= g + sum mu p, where the other piece may hold what this
-  /// one presses. A point that slips adds mu s/|s| to the force of a unit of
-  /// pressure. All of these sets are convex, so there is a best fit; where it
-  /// leaves a choice, as at a corner that sticks, that of least norm is taken,
-  /// or where the node can move, that whose pressures hold what they can.
+  /// The multipliers at a node where pieces meet, whose forces balance a given
+  /// force as far as the laws of the points allow: pressures p >= 0, friction
+  /// in the ball |lambda| <= rho, or with Coulomb's law in the cone |lambda| <=
+  /// g + sum mu p. A point that slips adds mu s/|s| to the force of a unit of
+  /// pressure. All of these sets are convex, so there is a best fit. Where it
+  /// is not unique, as at a corner that sticks, the one of least norm is taken
+  /// or, at a node that can move into a compliant obstacle, the one whose
+  /// pressures carry what they can.
   class NodeForces
   {
   public:
-    /// @p law: null where bounds are given. All arguments stay in use.
+    /// @p law: null where bounds are given. Keeps references to all arguments.
     NodeForces(const ContactLayout       &face,
                unsigned int               node,
                const ContactState        &state,
@@ -58,15 +58,15 @@ namespace Viscoplastic
     Tensor<1, 3>
     fit(const Tensor<1, 3> &residual, ContactState &state) const;
 
-    /// By how much the pressures of the obstacles, as fit() finds them, change
-    /// with the node's force: each by its vector times the change. The node may
-    /// move as far as nothing holds it, so that springs press more or less,
-    /// what is at its bound of friction goes with them, and so on.
+    /// The derivatives of the pressures that fit() finds with respect to the
+    /// force of the node, one vector for each obstacle. They include that the
+    /// node moves in its free directions, which changes the forces of compliant
+    /// obstacles and friction that is at its bound.
     std::vector<Tensor<1, 3>>
     pressures_of_force() const;
 
-    /// The pressures in the force @p residual by these, from the multipliers
-    /// that fit() has found on.
+    /// The pressures for the node force @p residual, linearized by these
+    /// derivatives about the multipliers of the state; at least zero.
     std::vector<double>
     pressures(const Tensor<1, 3> &residual) const;
 
@@ -77,36 +77,36 @@ namespace Viscoplastic
     }
 
   private:
-    /// A row of a point that takes part: a component of its multiplier.
+    /// A column of equations(): a component of the multiplier of a point.
     struct Column
     {
       unsigned int point, component;
     };
 
-    /// By how much pressures change: of_force[j] times a change of the node's
-    /// force, of_spring[k][j] times one of the pressure k of a spring.
+    /// Derivatives of the pressure j: of_force[j] with respect to the node's
+    /// force, of_spring[k][j] to the pressure of the compliant obstacle k.
     struct PressureChanges
     {
       std::vector<Tensor<1, 3>>        of_force;
       std::vector<std::vector<double>> of_spring;
     };
 
-    /// The changes of least norm of constraint multipliers that balance a
-    /// change of force and spring pressures and keep friction at bounds that
-    /// are reached.
+    /// The least-norm changes of constraint multipliers that balance a change
+    /// of force and spring pressures and keep friction at bounds that are
+    /// reached.
     PressureChanges
     changes_of_what_holds() const;
 
-    /// The equations of these multipliers, one a column: balance of the force,
-    /// then friction at the bounds of the points in @p limits.
+    /// The equations for these multipliers: three rows for the balance of
+    /// forces, then one for each point in @p limits, whose friction stays at
+    /// its bound.
     FullMatrix<double>
     equations(const std::vector<Column>       &columns,
               const std::vector<unsigned int> &limits) const;
 
-    /// By how much springs press more with the node's force, obstacle by
-    /// obstacle: by how far the node moves. In the directions that are free
-    /// their forces, with the friction that follows from a unit of pressure,
-    /// are in balance with it: dual vectors tell which is which.
+    /// The derivatives of the pressures of compliant obstacles with respect to
+    /// the node's force. In the free directions their forces, with the friction
+    /// of a unit of pressure, balance it; a dual basis gives the part of each.
     std::vector<Tensor<1, 3>>
     springs_of_force(const PressureChanges &changes) const;
 
@@ -149,8 +149,8 @@ namespace Viscoplastic
     void
     clip(std::vector<Tensor<1, 2>> &multipliers) const;
 
-    /// The force of the multipliers in constrained directions, with that of
-    /// slipping points as far as it depends on pressures.
+    /// The force of the multipliers in constrained directions, including the
+    /// friction of slipping points that is proportional to pressures.
     Tensor<1, 3>
     force(const std::vector<Tensor<1, 2>> &multipliers) const;
 
@@ -172,7 +172,7 @@ namespace Viscoplastic
     double pressure_scale;
     /// Whether an obstacle of the node is compliant.
     bool any_springs;
-    /// Eigenvalues and vectors of G, and the largest without that weight.
+    /// Eigenpairs of G, and the largest eigenvalue without pressure_scale.
     std::array<std::pair<double, Tensor<1, 3>>, 3> gram;
     double                                         largest;
   };

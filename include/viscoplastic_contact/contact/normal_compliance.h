@@ -7,13 +7,13 @@
 
 namespace Viscoplastic
 {
-  /// A foundation that gives way at a node: the force p(w), the sum of those of
-  /// the pieces that meet there, at the penetration w = u_n - g.
+  /// Normal compliance of the foundation at a node: the force p(w) at the
+  /// penetration w = u_n - g, summed over the pieces that meet there.
   class NormalCompliance
   {
   public:
-    /// Add a piece that presses by @p law with k = @p factor, the integral of
-    /// that of the law times the basis function of the node.
+    /// Add a piece with the pressure law @p law and k = @p factor, the integral
+    /// of the coefficient of the law times the basis function of the node.
     void
     add(const double factor, const PressureLaw &law)
     {
@@ -63,14 +63,15 @@ namespace Viscoplastic
     double
     penetration(const double p) const;
 
-    /// The penetration w with w = @p free_w - @p flexibility p(w), for a
-    /// penetration @p free_w > 0 without contact force.
+    /// The solution of w = @p free_w - @p flexibility p(w), where @p free_w > 0
+    /// is the penetration without contact force.
     double
     penetration(const double flexibility, const double free_w) const;
 
-    /// A bound on energy(w) + its conjugate at @p p - p w >= 0, which is zero
-    /// for p = force(w): what it costs to take another force p >= 0 for the one
-    /// at w > 0. (The integral of p(x) - p from where p is the force to w.)
+    /// A bound on the complementarity defect Phi(w) + Phi*(p) - p w >= 0 of a
+    /// force @p p >= 0 at @p w > 0, with Phi = energy() and its conjugate Phi*;
+    /// zero for p = force(w). (The defect is the integral of force(x) - p over
+    /// x from penetration(p) to w.)
     double
     defect(const double w, const double p) const;
 

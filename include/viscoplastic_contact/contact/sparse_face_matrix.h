@@ -11,14 +11,14 @@ namespace Viscoplastic
   /// A face matrix in compressed rows: couplings of face unknowns at fixed
   /// bulk.
   ///
-  /// The first stage of its sweeps are the nodes that couple with none of
-  /// another rank. The others follow rank by rank, where ranks that do not
-  /// couple with each other take the same stage.
+  /// The first stage of a sweep has the nodes that couple with none of another
+  /// rank. The others follow rank by rank; ranks that do not couple with each
+  /// other share a stage.
   class SparseFaceMatrix : public FaceMatrix
   {
   public:
-    /// A coupling with a column of any rank: @p row is an entry of face
-    /// vectors, @p column is counted over all ranks.
+    /// A matrix entry: `row` is an index of face vectors of this rank, `column`
+    /// is counted over all ranks.
     struct Entry
     {
       unsigned int            row;
@@ -26,8 +26,8 @@ namespace Viscoplastic
       double                  value;
     };
 
-    /// @p entries in any order, each pair once; @p numbers: those of this
-    /// rank's face entries over all ranks, a range. Collective.
+    /// @p numbers: the numbers of this rank's face entries over all ranks, a
+    /// range; @p entries: in any order, each pair once. Collective.
     SparseFaceMatrix(const ContactLayout &face,
                      const IndexSet      &numbers,
                      std::vector<Entry>   entries);
@@ -46,12 +46,13 @@ namespace Viscoplastic
                                Vector<double>       &r) const override;
 
   private:
-    /// Divide nodes into stages: ranks that couple are never in one.
+    /// Divide nodes into stages such that after the first one, ranks that
+    /// couple never share a stage.
     void
     make_stages();
 
-    /// A coupling with an entry that another rank owns; @p column: its number
-    /// among the entries of `changes`.
+    /// A coupling with an entry that another rank owns; `column` is its local
+    /// index in `changes`.
     struct Coupling
     {
       unsigned int row, column;

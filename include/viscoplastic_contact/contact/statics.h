@@ -45,16 +45,14 @@ namespace Viscoplastic
   ///
   /// Least squares with nonnegative coefficients (Lawson, Hanson) in as many
   /// dimensions as there are rigid motions decide; of the infinitely many
-  /// forces of a cone of friction the one that helps most is taken into account
-  /// each time. Loads that lie on the edge of what can be balanced, up to
-  /// @p accuracy, to which they and bounds are known relative to them, are
-  /// balanced: what is missing beyond that would turn the body without end.
-  /// Collective.
+  /// forces of a friction cone, each iteration adds the one that helps most.
+  /// Loads that miss a balance by less than @p accuracy, the accuracy of loads
+  /// and bounds relative to the loads, count as balanced. Collective.
   ///
   /// @p bounds: of friction at each point, infinite where nothing can slip;
-  /// what is said of obstacles does not count. @p bounds_of_pressure: what a
-  /// unit of pressure at the first, second, ... obstacle of a node adds to the
-  /// bound of each point of friction there; empty where bounds are given.
+  /// entries of obstacles are ignored. @p bounds_of_pressure: what a unit of
+  /// pressure at the first, second, ... obstacle of a node adds to the bound of
+  /// each point of friction there; empty where bounds are given.
   Statics
   balance(const HeldBody                         &body,
           const std::vector<double>              &bounds,
@@ -62,12 +60,12 @@ namespace Viscoplastic
           const double                            accuracy);
 
 
-  /// The rigid motion, in the basis of the body, by which a body in the state
-  /// @p contact, with the present @p slips of its points, comes to where its
-  /// loads and contact are in balance: by Newton's method for what neither
-  /// sticking points nor rigid obstacles prevent, and no further than to the
-  /// next rigid obstacle. Only foundations that give way resist it, and
-  /// friction of points that slip. Collective.
+  /// Return the rigid motion, in the basis HeldBody::motions, that takes a body
+  /// in the state @p contact, with the present @p slips of its points, to where
+  /// its loads and contact forces balance. Newton's method over the motions
+  /// that neither sticking points nor rigid obstacles prevent, which only
+  /// compliant obstacles and the friction of slipping points resist; ends at
+  /// the next rigid obstacle. Collective.
   std::vector<double>
   settle(const HeldBody                  &body,
          const ContactState              &contact,

@@ -21,7 +21,7 @@ namespace Viscoplastic
 
 
   /// A solve for a displacement u in progress, as contact solvers see it: the
-  /// energy 1/2 a(u,u) - l(u) of everything but contact. It owns the data that
+  /// energy 1/2 a(u,u) - l(u) of everything but contact. It holds the data that
   /// it needs of l and u; BulkSolver::begin() creates it.
   ///
   /// A contact solver moves the displacement by the calls below and sees only

@@ -11,27 +11,27 @@
 #include <limits>
 #include <sstream>
 
-// The pressure of the step itself in Coulomb's law: solved for with the step,
-// or a fixed point of steps with given bounds.
+// Coulomb's law with the pressure of the step itself: solved within the step,
+// or by a fixed-point iteration of steps with given bounds.
 
 namespace Viscoplastic
 {
   namespace
   {
-    /// By how much of the largest displacement solutions differ that are
-    /// several, and not one to the tolerance of the solver.
+    /// Solutions are different ones if they differ by more than this part of
+    /// the largest displacement.
     constexpr double several_solutions = 1e-2;
 
-    /// After so many solves that have not halved the change of bounds, it may
-    /// be what rounding leaves of pressures; more than this part of the bounds
-    /// is refused.
+    /// After this many solves that have not halved the change of bounds, it may
+    /// be rounding of pressures, but only if it is below largest_blur times the
+    /// bounds.
     constexpr unsigned int stalled_after = 15;
     constexpr double       largest_blur  = 1e-3;
 
 
 
-    /// The last of @p n_solves has changed the bounds by @p change of their
-    /// sum, @p factor times as much as the one before.
+    /// The message if the last of @p n_solves has changed the bounds by @p
+    /// change of their sum, @p factor times as much as the one before.
     std::string
     no_fixed_point(const unsigned int n_solves,
                    const double       change,
@@ -80,8 +80,8 @@ namespace Viscoplastic
           }
         catch (const NoCoulombSolution &failure)
           {
-            // Where Newton's method jams, as on flat bodies whose foundations
-            // meet at an edge, solves with given bounds may get through.
+            // If Newton's method stalls, as for flat bodies whose foundations
+            // meet at an edge, solves with given bounds may converge.
             const std::string why = reason(failure);
             u                     = first_u;
             contact               = first;
@@ -120,11 +120,11 @@ namespace Viscoplastic
 
     const ContactFace<dim> &face        = *discretization.face;
     double                  last_change = 0.;
-    // How far bounds follow the pressure, once they swing; by how much they
-    // have missed it before that.
+    // The relaxation factor of bounds, below 1 once they oscillate, and their
+    // misfit before the last move.
     double              share = 1.;
     std::vector<double> last_missing;
-    // The solve that has halved the change last.
+    // The change of bounds when it was last halved, and the solve.
     double       best_change = std::numeric_limits<double>::max();
     unsigned int last_gain   = 0;
     for (;;)
@@ -141,7 +141,7 @@ namespace Viscoplastic
             {
               missing[p] = bounds[p] - contact.bound[p];
               change += std::abs(missing[p]);
-              // Each may be zero, in turn or in the end.
+              // Each of the bounds may be zero: take the largest one.
               double largest = bounds[p];
               for (const double bound : {contact.bound[p], problem.bounds[p]})
                 if (std::isfinite(bound))
@@ -150,7 +150,7 @@ namespace Viscoplastic
             }
         change = face.layout().sum(change);
         sum    = face.layout().sum(sum);
-        // Beside the error of the solves, ratios mean nothing.
+        // Ratios of changes that are errors of the solves mean nothing.
         if (report.bound_iterations > 0 && std::isfinite(last_change) &&
             last_change > 1e3 * tolerance * sum)
           report.contraction =
@@ -162,8 +162,8 @@ namespace Viscoplastic
             best_change = change;
             last_gain   = report.bound_iterations;
           }
-        // Pressures are known but to rounding of the forces that they are the
-        // sums of.
+        // Pressures are known only up to rounding of the forces of which they
+        // are sums.
         if (change <= largest_blur * sum &&
             report.bound_iterations > last_gain + stalled_after &&
             change <= rounding_of_bounds(problem, right_side, u))
@@ -176,9 +176,9 @@ namespace Viscoplastic
                     ExcMessage(no_fixed_point(report.bound_iterations,
                                               change / sum,
                                               change / last_change)));
-        // Friction may hold what would press, and where pieces meet, each holds
-        // the node against the others: pressures may swing between two states.
-        // Then bounds follow as far as two changes tell (Aitken).
+        // Pressures may oscillate between two states, since friction may hold
+        // what would press, as where pieces meet. Then relax the bounds by
+        // Aitken's rule.
         const bool swings = share < 1. || (report.bound_iterations > 0 &&
                                            change >= 0.999 * last_change &&
                                            std::isfinite(last_change));
@@ -222,7 +222,7 @@ namespace Viscoplastic
     double sum = 0.;
     for (unsigned int p = 0; p < layout.points.size(); ++p)
       for (const double of_pressure : bounds_of_pressure[p])
-        // A force f at a node has at least the norm f / sqrt(its diagonal).
+        // The dual norm of a nodal force f is at least f / sqrt(diagonal).
         sum += of_pressure * rounding *
                std::sqrt(diagonal[layout.points[p].node].norm());
     return layout.sum(sum);
@@ -254,8 +254,8 @@ namespace Viscoplastic
     if (report.doubt.empty())
       return report;
 
-    // The same from the solutions without friction and without slip: if one of
-    // them ends elsewhere, there are several solutions.
+    // Solve from the solutions without friction and without slip, too: if one
+    // of them ends elsewhere, there are several solutions.
     double difference = 0.;
     for (const double bound : {0., std::numeric_limits<double>::infinity()})
       {
@@ -278,10 +278,10 @@ namespace Viscoplastic
           }
         catch (const ExceptionBase &)
           {
-            // That there is one solution is all that is known then.
+            // This start has found no other solution.
           }
       }
-    // A body that has lifted off may be at rest where it was made.
+    // If the body has lifted off, u may be zero.
     difference /= std::max(u.linfty_norm(), first_u.linfty_norm());
     std::ostringstream text;
     text << report.doubt;

@@ -61,7 +61,7 @@ namespace Viscoplastic
     z = old.z;
     if (discretization.laws.thermal)
       discretization.laws.thermal->follow(old.t, step.t, z);
-    // What z would be if nothing flowed.
+    // z at the end of the step without any flow.
     const IrreversibleStress carried = is_heun ? z : IrreversibleStress();
     if (scene.has_viscosity())
       {
@@ -120,8 +120,8 @@ namespace Viscoplastic
   {
     if (!problem.data_are_unchanged)
       return false;
-    // Of rates that are zero, or as small as rounding, and of temperatures that
-    // stay.
+    // z is the same if rates vanish, or are below rounding, and temperatures
+    // stay constant.
     return !discretization.scene().has_irreversible_stress() ||
            Utilities::MPI::min(state.z == problem.old.state.z &&
                                    state.history == problem.old.state.history ?
@@ -144,7 +144,7 @@ namespace Viscoplastic
     // A body does not move unless its data or its z change.
     if (nothing_has_changed(problem, state))
       {
-        // The predictor of Heun's method may have been another one.
+        // The report may contain a solve of Heun's predictor.
         const ContactReport earlier = solution.report;
         solution.stay(problem, d.space, d.face.get());
         solution.irreversible = problem.old.forces.irreversible;

@@ -51,10 +51,11 @@ namespace Viscoplastic
 
 
 
-    /// Where an increasing function is near zero in (0, 1), given its values at
-    /// the ends, by regula falsi in the manner of Illinois. Where the function
-    /// jumps over zero the result is near the jump, which is as far as the
-    /// energy decreases; the iteration that asks for it has an end of its own.
+    /// An approximate root in (0, 1) of an increasing function with the values
+    /// @p f_0 and @p f_1 at the ends, by the Illinois variant of regula falsi.
+    /// If the function jumps over zero, the result is near the jump, up to
+    /// which the energy decreases. It need not be accurate within Newton's
+    /// method.
     template <typename Function>
     double
     find_root(const Function &f, const double f_0, const double f_1)
@@ -90,7 +91,7 @@ namespace Viscoplastic
 
 
 
-  /// The iteration of one step.
+  /// Newton's method of one step.
   template <int dim>
   class ImplicitStep<dim>::Newton
   {
@@ -107,34 +108,34 @@ namespace Viscoplastic
     stress(const DistributedVector  &ghosted_u,
            const IrreversibleStress &guess) const;
 
-    /// The first tangent is that of a body that goes on as it did.
+    /// Take the first tangent at a state extrapolated by the old velocity.
     void
     predict();
 
-    /// u, sets and multipliers with the present tangent, and z of that u.
+    /// Solve for u, sets and multipliers with the present tangent; set z for u.
     void
     solve_with_tangent();
 
-    /// What the tangent has missed, and the size of the solution, in the norm
-    /// of the tangent matrix.
+    /// Set the linearization error and the size of the solution, in the norm of
+    /// the tangent matrix.
     void
     measure_error();
 
     void
     give_up() const;
 
-    /// Where the next tangent is taken: at the solution, or as far towards it
-    /// as is of use. Returns the share of the whole way.
+    /// Move the place of the next tangent to the solution, or toward it by the
+    /// step length of the line search, which is returned.
     double
     move();
 
-    /// What the matrix misses of tangents that are not symmetric may be all
-    /// that matters. Returns the share of the correction that is taken.
+    /// Correct the solution with the tangents that are not symmetric. Returns
+    /// the share of the correction that is taken; 0 for none.
     double
     correct();
 
-    /// How far to go from base to u: 1 unless the energy of the step increases
-    /// before.
+    /// The step length from base to u: 1 unless the energy of the step
+    /// increases on the way.
     double
     step_length() const;
 
@@ -153,9 +154,9 @@ namespace Viscoplastic
     IrreversibleStress target;
 
     StepSolution<dim> solution;
-    /// The solution in frames.
+    /// The solution in nodal frames.
     DistributedVector u;
-    /// Where the tangent is: ghosted, with the z there; and the same in frames,
+    /// The place of the tangent: ghosted u and its z; and u in nodal frames,
     /// empty for the prediction, which need not satisfy the boundary
     /// conditions.
     DistributedVector  at;
@@ -272,8 +273,9 @@ namespace Viscoplastic
   void
   ImplicitStep<dim>::Newton::solve_with_tangent()
   {
-    // In the energy norm of a(.,.), which may be as much larger; but not
-    // beyond what rounding allows. Half of it for friction, half for z.
+    // The tolerance is for the energy norm of a(.,.), which may be norm_ratio()
+    // times that of the tangent; rounding allows no less than 1e-10. Half of it
+    // is for friction, half for z.
     tolerance = 0.5 * std::max(problem.tolerance / method.tangent.norm_ratio(),
                                std::min(problem.tolerance, 1e-10));
     {
@@ -456,13 +458,13 @@ namespace Viscoplastic
       error < last_error ?
         std::log(tolerance * size / error) / std::log(error / last_error) :
         std::numeric_limits<double>::infinity();
-    // A new tangent in iterations with the present one: a preconditioner is
-    // made anew at little cost, factors are not.
+    // The price of a new tangent, in iterations with the present one: low for a
+    // preconditioner, high for factors.
     const bool   is_iterative = !method.solver.bulk().is_exact();
     const double price        = is_iterative ? 1. : dim == 2 ? 5. : 12.;
     if (length < 1.)
       return true;
-    // After one iteration nothing is known of the next ones.
+    // One iteration does not show the rate of convergence.
     if (tangent_is_new && solution.newton_iterations == 1)
       return is_iterative;
     return iterations_left > price;

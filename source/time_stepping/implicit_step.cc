@@ -22,9 +22,8 @@ namespace Viscoplastic
   {
     const Discretization<dim> &d   = discretization;
     const State<dim>          &old = problem.old.state;
-    // Bodies with constant tangents flow under any stress: it is not worth
-    // while to look. Of sources, those on one side of t are not those of a
-    // step.
+    // Bodies with constant tangents flow under any stress, so that the test
+    // would be in vain. A source on one side of t is not that of the step.
     if (!problem.data_are_unchanged || tangent.is_constant ||
         d.laws.source_solution)
       return {};
@@ -89,9 +88,9 @@ namespace Viscoplastic
   {
     TimerOutput::Scope phase(timer, "tangent");
     const bool         is_new = tangent.linearize(ghosted_u, z, laws, k);
-    // A preconditioner that has seen other solves is not a function of what
-    // is given; only that of constant tangents goes from step to step, where
-    // no steps of other schemes are between.
+    // A preconditioner that has adapted to earlier solves is not a function of
+    // the arguments. Keep it from step to step only for constant tangents, and
+    // if no steps of other schemes are in between.
     const bool stays = tangent.is_constant && takes_all_steps;
     if (is_new || !solver.is_ready() || !(stays || solver.bulk().is_exact()))
       solver.set_matrix(tangent.matrix(), tangent.max_poissons_ratio());
@@ -103,7 +102,7 @@ namespace Viscoplastic
   std::optional<PreconditionerState>
   ImplicitStep<dim>::preconditioner_state() const
   {
-    // Where each step makes its own matrix, there is nothing to remember.
+    // If each step makes its own matrix, there is nothing to keep.
     if (!solver.is_ready() || !tangent.is_constant || !takes_all_steps)
       return {};
     return solver.bulk().preconditioner_state();
@@ -128,7 +127,7 @@ namespace Viscoplastic
                   state.k);
         solver.bulk().restore(preconditioner);
       }
-    // An exact solver has the factor of the last matrix, and no such state.
+    // An exact solver has no such state and keeps its last factor.
     else if (solver.is_ready() && !solver.bulk().is_exact())
       solver.clear();
   }

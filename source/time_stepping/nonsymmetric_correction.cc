@@ -10,7 +10,7 @@ namespace Viscoplastic
 {
   namespace
   {
-    /// The algorithmic tangents less E, at the samples.
+    /// The algorithmic tangents minus E at the samples.
     template <int dim>
     std::vector<SymmetricTensor<4, 3>>
     flow_tangents(const FlowLaws<dim>      &laws,
@@ -99,7 +99,7 @@ namespace Viscoplastic
 
 
 
-  /// The inverse for the symmetric matrix, as well as the solver has it.
+  /// An approximate inverse for the symmetric matrix, by its solver.
   template <int dim>
   struct NonsymmetricCorrection<dim>::Preconditioner
   {
@@ -110,7 +110,7 @@ namespace Viscoplastic
     void
     vmult(DistributedVector &y, const DistributedVector &x) const
     {
-      // GMRES measures; the preconditioner need not.
+      // GMRES controls the error; the preconditioner may be inaccurate.
       constexpr double tolerance = 0.1;
       y                          = 0.;
       if (!step.face)
@@ -195,7 +195,7 @@ namespace Viscoplastic
         solver.solve(r, v, 0.1);
         return std::sqrt(std::max(0., v * r));
       }
-    // What the bulk has answered at once, and what is left.
+    // The part that begin() has solved for in the bulk, and the rest.
     const auto solve = solver.begin(r, v);
     return std::hypot(solve->energy_norm(),
                       solve->dual_norm(
@@ -302,7 +302,7 @@ namespace Viscoplastic
           }
         catch (const SolverControl::NoConvergence &)
           {
-            // What there is may do: it is taken if it reduces the residual.
+            // The last iterate is taken if it reduces the residual.
           }
         result.iterations = std::max(result.iterations, control.last_step());
         for (double share = 1.; share > 0.1; share *= 0.5)
@@ -316,7 +316,7 @@ namespace Viscoplastic
               }
             catch (const ExceptionBase &)
               {
-                continue; // too far: the law has no answer there
+                continue; // too far: the law has no solution there
               }
             if (after <= (1. - 0.1 * share) * before)
               {

@@ -8,18 +8,18 @@ namespace Viscoplastic
 {
   namespace
   {
-    /// The springs of the proximal point method, relative to the diagonal of
-    /// the matrix. What they carry is reduced by something like this factor
-    /// each time that the step is solved; softer ones would magnify rounding
-    /// of resultants beyond what StepSolver counts as rounding.
+    /// The stiffness of springs, relative to the diagonal of the matrix. Each
+    /// solve of the step reduces their forces by about this factor; softer ones
+    /// would magnify rounding of resultants beyond what StepSolver counts as
+    /// rounding.
     constexpr double spring_stiffness = 1e-3;
-    /// Of the forces that hold a body back from all of its way.
+    /// Rounding of loads, relative to the diagonal times the displacement.
     constexpr double rounding_of_forces = 1e-14;
-    /// A body that still moves after so many solves is not held.
+    /// A body that still moves after this many solves is not held.
     constexpr unsigned int max_proximal_steps = 200;
-    /// Where it has not come to rest after so many, something that is much
-    /// softer than the springs holds it, as a slender part that bends, and the
-    /// steps learn from each other.
+    /// If the body has not come to rest after this many solves, something much
+    /// softer than the springs holds it, such as a slender part that bends, and
+    /// learned_step() is used.
     constexpr unsigned int first_learned_step = 4;
   } // namespace
 
@@ -40,8 +40,8 @@ namespace Viscoplastic
         motion /= motion.l2_norm();
         orthonormal_motions.push_back(motion);
       }
-    // Elimination with pivots: the component that moves most in what those
-    // before have left free.
+    // Elimination with pivots: take the component that moves most in the
+    // motions that earlier ones leave free.
     const ContactLayout &face = discretization.face->layout();
     const auto &positions     = discretization.face_restriction().positions();
     std::vector<Vector<double>> left;
@@ -60,11 +60,11 @@ namespace Viscoplastic
               double square = 0.;
               for (const Vector<double> &motion : left)
                 square += motion[k] * motion[k];
-              // Rather not where pieces push against each other.
+              // Avoid nodes where pieces push against each other.
               if (face.n_node_points(node) > 1 &&
                   !face.has_plain_friction(node))
                 square *= 0.1;
-              // Of equal ones the first.
+              // Of equal components take the first.
               if (square > (1. + 1e-10) * largest)
                 {
                   largest = square;
@@ -84,7 +84,7 @@ namespace Viscoplastic
               row[i] = left[i][pivot];
           }
         row = Utilities::MPI::broadcast(communicator, row, rank);
-        // The motions in which it stays where it is.
+        // Keep the motions in which this component does not move.
         const unsigned int most =
           std::max_element(row.begin(),
                            row.end(),
@@ -117,7 +117,7 @@ namespace Viscoplastic
         regular_matrix.add_to_diagonal(i, springs.begin()[i]);
       }
 
-    // A rigid motion takes no force but that of the springs.
+    // Rigid motions must need little force besides that of the springs.
     DistributedVector force(springs), held(springs);
     for (const DistributedVector &motion : motions)
       {
@@ -147,8 +147,8 @@ namespace Viscoplastic
   {
     DistributedVector way(center), fall(last_change), of_springs(springs);
     of_springs.scale(change);
-    // Beyond the minimum the springs press the body onto what holds it there:
-    // it is where it is to be, or nearly so.
+    // Beyond the minimum the springs press the body onto what holds it, so that
+    // it is near its final place.
     if (!(last_change * of_springs > 0.))
       return 0.;
     way -= last_center;
@@ -197,8 +197,8 @@ namespace Viscoplastic
       bounds_of_pressure =
         discretization.face->bounds_of_pressure(problem.time_step.t,
                                                 problem.slip_rates);
-    // Bounds of pressures are no better known than the solves that these are
-    // of.
+    // Bounds that follow from computed pressures are only as accurate as the
+    // solves.
     const double accuracy =
       with_pressure || !discretization.face->has_computed_pressure() ? 1e-9 :
                                                                        1e-6;
@@ -215,7 +215,7 @@ namespace Viscoplastic
   {
     const ContactFace<dim> &face    = *discretization.face;
     const bool              follows = problem.bounds_follow_pressure;
-    // What is found for the pressure of the step says more.
+    // Bounds that follow the pressure of the step are examined first.
     const auto with_pressure = [&] {
       return statics(problem, follows ? problem.given_bounds : bounds, true);
     };
@@ -238,7 +238,7 @@ namespace Viscoplastic
            "friction in the step in which contact begins; 'Solver/Coulomb "
            "pressure' = Newton has." :
            "")));
-    // Those of pressures that could be.
+    // Take the bounds of the pressures in the equilibrium found.
     ContactState        state(bounds);
     std::vector<double> result = problem.given_bounds;
     for (unsigned int p = 0; p < bounds.size(); ++p)
@@ -315,8 +315,8 @@ namespace Viscoplastic
                  "mend that.";
     else
       {
-        // The last motion by which the body has gone on; each basis vector sees
-        // those before it only.
+        // Expand the last motion in the basis, last vector first, since each
+        // orthonormal motion combines those up to it.
         std::vector<double> way(motions.size());
         for (std::size_t i = motions.size(); i-- > 0;)
           {
@@ -349,8 +349,8 @@ namespace Viscoplastic
     DistributedVector force(springs);
     force.scale(change);
     held.in_springs = norm(change);
-    // Of a way without end nothing but rounding is left in norms, but
-    // forces that balance leave nothing in the springs.
+    // Norms of a body that moves on without end are nothing but rounding, but
+    // in equilibrium the springs carry no forces.
     const double force_in_springs = force.l1_norm();
     singular_matrix->vmult(force, u);
     held.size =
@@ -360,8 +360,8 @@ namespace Viscoplastic
         0.01 * std::max(force.l1_norm(), right_side.l1_norm()) ||
       held.in_springs <= rounding * norm(whole);
     report.error += held.in_springs;
-    // A body under no loads, but for what rounding of its way makes of old
-    // stresses, that moves without strain has no other size.
+    // For a body that moves without strain, under no loads but rounding of old
+    // stresses, the rounding error is the only scale.
     force = springs;
     force.scale(whole);
     const double reference =
@@ -385,22 +385,22 @@ namespace Viscoplastic
                               DistributedVector       &u,
                               ContactState            &contact) const
   {
-    // The error of the solver is measured with the springs, relative to a norm
-    // in which the body's way to the foundation counts, too.
+    // The error of inner solves is measured with the springs, relative to a
+    // norm that includes the body's way to the foundation.
     ContactReport     report;
     double            inner_tolerance = tolerance, left_by_rounding = 0.;
     const HeldBody    body = held_body(problem);
     DistributedVector center(u), right(u), change(u), last_center, last_change;
     if (rests(problem, body, right_side))
       {
-        // The first guess goes on as the body went before.
+        // Remove the rigid part of the extrapolation in the first guess.
         change -= problem.old_u();
         u -= rigid_part(change);
         center = u;
       }
-    // How far the body has gone as a whole makes no strain, but rounding of
-    // it would make forces, which soft ground does not tell from loads: all
-    // displacements are those relative to a rigid motion.
+    // A rigid motion makes no strain, but its rounding would make forces that
+    // soft ground does not tell from loads. So all displacements below are
+    // relative to rigid_motion.
     DistributedVector old_u(problem.old_u()),
       rigid_motion = discretization.space.owned_vector();
     for (unsigned int n = 0; n < max_proximal_steps; ++n)
@@ -424,7 +424,7 @@ namespace Viscoplastic
         whole += rigid_motion;
         const auto [in_springs, size, in_balance] =
           measure(problem, right_side, tolerance, u, change, whole, report);
-        // What rounding leaves of a solve may be left in the springs, too.
+        // Rounding errors of a solve may remain in the springs, too.
         if (in_balance && report.error <= std::max(tolerance * size,
                                                    2. * report.rounding_error))
           {
@@ -434,9 +434,9 @@ namespace Viscoplastic
         if (in_springs < 0.5 * report.error)
           inner_tolerance *=
             std::clamp(0.3 * tolerance * size / report.error, 1e-3, 0.5);
-        // A body on its way to the foundation goes on as it goes, until it
-        // touches it; one that a soft part of itself or of the ground holds, or
-        // friction that is small, until its energy has its minimum there.
+        // Repeat the change: of a body on its way to the foundation, until it
+        // touches; of one held by a soft part, soft ground or little friction,
+        // until its energy has its minimum.
         singular_matrix->vmult(right, change);
         double step =
           repetitions({in_springs * in_springs, std::max(0., change * right)},
@@ -457,9 +457,9 @@ namespace Viscoplastic
           }
         center = u;
         center.add(step, change);
-        // A body on soft ground is where its loads are in balance as a whole,
-        // long before springs have let it go there. Steps that learn have the
-        // springs where they are to be, but exaggerate the strains.
+        // Move a body on soft ground to where its loads balance as a whole,
+        // which the springs would delay. Not with learned steps: these place
+        // the springs well, but exaggerate the strains.
         if (discretization.face->gives_way() && !learns)
           settle_whole(problem, body, contact, old_u, center, u);
       }

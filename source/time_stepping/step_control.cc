@@ -29,44 +29,43 @@ namespace Viscoplastic
     /// The ratio of error and allowed error that the controller aims at, so
     /// that most steps are accepted.
     constexpr double aim = 0.9;
-    /// How much a step may be longer or shorter than the one before.
+    /// Limits for the ratio of a step to the one before.
     constexpr double largest_growth = 2., growth_after_event = 5.,
                      least_growth = 0.2;
-    /// Where a step could be longer by less than that, it is not worth it:
+    /// Steps that could grow by less than this factor keep their size, since
     /// backward Euler factors a matrix for each step size.
     constexpr double least_change = 1.2;
-    /// A ratio of nearly zero says nothing.
+    /// Smaller ratios of errors are taken for this one.
     constexpr double least_ratio = 1e-4;
-    /// How far contributions of steps may be trusted to go on to cancel, and
-    /// what is left of a budget that has been exceeded.
+    /// The least value of c (see StepControl), down to which contributions may
+    /// cancel, and the least rest of the budget, as a part of it.
     constexpr double least_cancellation = 0.1, least_rest = 0.05;
-    /// The part of what is left that a new mesh may take in its first step.
+    /// The part of the rest that a step repeated on a new mesh may use.
     constexpr double most_of_new_mesh = 0.15;
-    /// The part of it that a step may use for what happens at some times only,
-    /// whatever it covers of the remaining time: a body that slows down asks
-    /// for accuracy then and not in between. Bounds of errors in slip fall with
-    /// the first power of the step size, as that part of the time does, so that
-    /// no step would be short enough.
+    /// The part of the rest that a step may use for events, whatever it covers
+    /// of the remaining time: a body that slows down needs accuracy at events
+    /// only. Error bounds for slip are of first order in k, as is the part of
+    /// the time, so that otherwise no step would be short enough.
     constexpr double most_of_event = 0.01;
-    /// The part that any step may use of what is left of half of all: what is
-    /// fast but small, as the beginning of creep, would otherwise have most of
-    /// the steps and next to none of the error. Fewest steps have equal errors.
+    /// Any step may use least_share of the rest of most_of_beginning of the
+    /// budget. Otherwise what is fast but small, such as the beginning of
+    /// creep, would take most of the steps for next to none of the error.
     constexpr double least_share = 1e-2, most_of_beginning = 0.5;
     /// Step sizes that are chosen by the error are fractions 2^(-i/n) of the
-    /// whole time, so that what solvers leave of a solution does not choose
-    /// others, which differ the more from step to step.
+    /// whole time, so that errors of solvers do not change them, a difference
+    /// that would grow from step to step.
     constexpr double n_sizes_per_octave = 16.;
-    /// Of the logarithm of the step size that the error allows: a jump by more
-    /// says nothing of further ones.
+    /// A limit for the change of the logarithm of the allowed step size: larger
+    /// jumps say nothing about later steps.
     constexpr double most_telling_growth = 0.3;
     constexpr double infinity = std::numeric_limits<double>::infinity();
-    /// More steps than that up to a time of the phases are a stiff scene, not a
-    /// short step.
+    /// More stable steps than this up to a time of the phases are refused,
+    /// since the scene is stiff.
     constexpr double most_divisions = 1e7;
 
 
 
-    /// The next smaller one, or @p k itself up to rounding.
+    /// The next smaller of these fractions, or @p k itself up to rounding.
     double
     chosen_step_size(const double k, const double whole_time)
     {
@@ -169,7 +168,7 @@ namespace Viscoplastic
       data_kinks.push_back(t);
       if (!is_on)
         return;
-      // There may be one that rounding separates from it.
+      // Skip times that only rounding separates from another one.
       const TimeSchedule::Phase &phase = schedule.phase_at(t);
       const double               near  = 1e-9 * (phase.end - phase.start);
       bool is_new = t - phase.start > near && phase.end - t > near;
@@ -188,7 +187,7 @@ namespace Viscoplastic
           const double               k     = 1e-6 * (phase.end - phase.start);
           add(t - 0.5 * k);
           add(t + 0.5 * k);
-          // Where fields are written at t, a step ends between the two.
+          // If fields are written at t, a step ends there, too.
           data_kinks.push_back(t);
         }
     std::sort(landing_times.begin(), landing_times.end());
@@ -210,10 +209,10 @@ namespace Viscoplastic
     if (output_interval > 0.)
       {
         double next = (std::floor(t / output_interval) + 1.) * output_interval;
-        // The multiple that t itself is, up to rounding.
+        // Skip the multiple that is t itself up to rounding.
         if (next - t <= 1e-9 * output_interval)
           next += output_interval;
-        // One that rounding separates from another target is that.
+        // A multiple that is another target up to rounding is that target.
         if (next < target - 1e-9 * output_interval)
           target = next;
       }
@@ -257,8 +256,8 @@ namespace Viscoplastic
                     ExcMessage(message.str()));
         k = std::min(k, limit);
       }
-    // Equal steps up to the target where few are left: no last one that is
-    // tiny.
+    // Take equal steps up to the target where few are left, to avoid a tiny
+    // last one.
     const double divisions = std::ceil(distance / k * (1. - 1e-10));
     if (divisions <= 1.)
       return {n + 1, t, target, distance};
@@ -283,7 +282,7 @@ namespace Viscoplastic
     if (tolerance_of_run == 0.)
       return parameters.tolerance * std::max(size * step.k / T, errors.change);
     const double all = tolerance_of_run * size;
-    // The less is left, the less contributions are trusted to cancel.
+    // The less of the budget is left, the less rely on cancellation.
     double cancellation = 1.;
     if (present.unsigned_sum > 0. && all > 0.)
       cancellation =
@@ -336,13 +335,13 @@ namespace Viscoplastic
   {
     if (!is_on)
       {
-        // After a failed step, try that of the phase again.
+        // After a failed step, try the step size of the phase again.
         present.wanted = 0.;
         return true;
       }
     const double new_size = std::max(present.size, errors.size);
     const double all      = tolerance_of_run * new_size;
-    // Of the same length as on the mesh before.
+    // Whether the step was accepted on the mesh before.
     const bool is_repeated = verdict && step.t == verdict->t;
     double     allowed     = allowed_error(step, errors, new_size);
     if (is_repeated)
@@ -392,7 +391,7 @@ namespace Viscoplastic
     if (is_repeated)
       return true;
     double factor = growth_allowed_by(ratio, step.k);
-    // Up to the event, steps do not grow; behind it, they do quickly.
+    // Steps do not grow before an event, and grow quickly after it.
     if (has_event)
       present.event_before = 0.;
     const bool is_before = step.t < present.event_before;
@@ -401,7 +400,7 @@ namespace Viscoplastic
                         is_before || (before.was_rejected && !has_event) ? 1. :
                                       has_event ? growth_after_event :
                                                   largest_growth);
-    // A step that a time has cut short does not tell the next one.
+    // A step that a landing time has cut short does not limit the next.
     const double uncut = before.was_rejected ? 0. : before.wanted;
     const double next =
       factor == 1. ? step.k :
@@ -413,7 +412,7 @@ namespace Viscoplastic
     present.was_rejected = false;
     if (schedule.phase_ending_at(step.t) > 0)
       {
-        // Another phase, another load.
+        // A new phase begins with its own step size.
         present.wanted       = 0.;
         present.last_ratio   = 0.;
         present.event_before = 0.;
@@ -457,7 +456,7 @@ namespace Viscoplastic
         from                   = phase.end;
         if (!is_on)
           {
-            // Those of the phase, divided as the last one is.
+            // Steps of the phase, divided as the last one was.
             steps += std::round(left / std::min(k, phase.step_size()));
             continue;
           }
@@ -474,8 +473,8 @@ namespace Viscoplastic
             left -= size;
             size = std::min(largest_growth * size, allowed);
           }
-        // k, k e^g, k e^2g, ... add up to what is left.
-        // Up to a limit they grow too little to tell that from chance.
+        // Steps k, k e^g, k e^2g, ... add up to what is left. With a limit,
+        // growth is too small to tell it from chance.
         const double growth  = is_present && !has_a_limit ?
                                  std::max(0., present.growth) :
                                  0.,

@@ -3,24 +3,23 @@
 
 #include <limits>
 
-// What a step of a TimeStepper is judged by.
+// The errors by which a TimeStepper accepts or rejects a step.
 
 namespace Viscoplastic
 {
   namespace
   {
-    /// The change of a state up to which its space estimate is taken in
-    /// proportion. Not round: equal steps would make ties, which ranks break
-    /// differently.
+    /// The change of a state up to which its space estimate is scaled from an
+    /// earlier one. Not round, since equal steps would make ties, which
+    /// rounding breaks differently with the number of ranks.
     constexpr double largest_change = 0.0937;
 
 
 
-    /// How far a step moves a state, relative to its end: the larger of the
-    /// changes of strain and stress in their energy norms, and beside them
-    /// twice the share of contact points that begin or cease to stick or to
-    /// touch. Not a number where there is nothing to be relative to.
-    /// Collective.
+    /// The change of a state in a step relative to its end: the larger of the
+    /// changes of strain and stress in their energy norms, plus twice the share
+    /// of contact points that begin or cease to stick or to touch. Infinite if
+    /// strain or stress vanish at the end. Collective.
     template <int dim>
     double
     change_of_step(const Discretization<dim> &discretization,
@@ -29,8 +28,8 @@ namespace Viscoplastic
     {
       const State<dim>  &old = accepted.state, &state = end.state;
       const Forces<dim> &old_forces = accepted.forces, &forces = end.forces;
-      // |dz|^2 and |z|^2 of what does not flow, (dz, eps(du)), points that
-      // change, and all.
+      // |dz|^2 and |z|^2 of bodies that do not flow, (dz, eps(du)), the number
+      // of points that change, and of all points.
       std::vector<double>     sums(5, 0.);
       const StressSpace<dim> &space = discretization.stress_space;
       if (!discretization.scene().has_viscosity() && !state.z.empty())
@@ -63,7 +62,7 @@ namespace Viscoplastic
         }
       sums[4] = state.contact.n_points();
       Utilities::MPI::sum(sums, discretization.space.communicator, sums);
-      // |sigma|^2 = a(u, u) + 2 (z, eps(u)) + |z|^2, of the step and its end.
+      // |sigma|^2 = a(u, u) + 2 (z, eps(u)) + |z|^2, of change and end.
       const ErrorEstimate &errors = end.errors;
       const double         strain = state.k * state.k * errors.velocity_square,
                    energy         = 2. * forces.strain_energy;
@@ -74,7 +73,7 @@ namespace Viscoplastic
         return whole > 0. ? std::sqrt(std::max(part, 0.) / whole) :
                             std::numeric_limits<double>::infinity();
       };
-      // Points count twice, since dual solutions jump with them.
+      // Points count twice, since dual solutions jump when they change.
       return std::max(share(strain, energy),
                       share(strain + 2. * sums[2] + sums[0],
                             energy + 2. * forces.irreversible_work + sums[1])) +
@@ -83,7 +82,7 @@ namespace Viscoplastic
 
 
 
-    /// Which part of the work of friction in a step is due to bounds that
+    /// The error in the friction work of a step that is due to bounds that
     /// change in it, since the work is that of the bounds at the end.
     /// Collective.
     double
@@ -101,7 +100,7 @@ namespace Viscoplastic
 
 
 
-    /// Those of a step in which points slip as they did in the one before.
+    /// slip_defects() of the step from @p accepted to @p end.
     template <int dim>
     SlipDefects
     slip_defects_of_step(const ContactFace<dim>    &face,
@@ -120,8 +119,8 @@ namespace Viscoplastic
 
 
 
-    /// Make errors in the energy norm those of the quantity of interest, whose
-    /// dual solution will have at least the norm @p later_dual_norm once.
+    /// Turn errors in the energy norm into those of the quantity of interest,
+    /// whose dual solution will reach at least the norm @p later_dual_norm.
     template <int dim>
     void
     make_errors_of_quantity(const Discretization<dim> &discretization,
@@ -183,12 +182,12 @@ namespace Viscoplastic
     TimerOutput::Scope         phase(timer, "estimate");
     std::optional<SlipDefects> slip_defects;
     double                     begun = 0., missed_work = 0.;
-    // Equal at both ends, they may be others in between.
+    // Data that are equal at both ends may vary in between.
     const Swing swing = swing_of_data(discretization, accepted, end);
     if (discretization.face && scene.has_bounds_of_step_before())
       missed_work = discretization.face->missed_bounds(state).work;
-    // What slip turns by on a new mesh, it does in any step, and what it has
-    // been in the first one says nothing of the second.
+    // On a new mesh, slip changes in a step of any size, so that the slip rate
+    // of the first step is not comparable with that of the second.
     end.has_slip_rate = accepted.is_solution || accepted.state.k == 0.;
     const bool is_after_kink =
       control.has_kink_within(step.time_step.t_old - accepted.state.k,
@@ -230,11 +229,11 @@ namespace Viscoplastic
     errors.change =
       std::max(state.k * std::sqrt(std::max(0., estimate.velocity_square)),
                estimate.irreversible_change);
-    // What the iterations leave of both states changes G by up to r times as
-    // much, and is all that there is of a smaller change: no shorter step has
-    // less of it. It is a bound: a change twice as large counts as it is, and
-    // steps do not depend on how far iterations have gone. At the limit of
-    // stability, k r = 2, a body that flows may end a step where it began.
+    // Errors of iterations in both states change G by up to r times as much, in
+    // steps of any size. A change of the state that is below them counts as
+    // none, and a large indicator in full, so that steps do not depend on how
+    // far iterations have gone. A body that flows may end a step where it began
+    // at the limit of stability, k r = 2: half the creep path is a change, too.
     const double left = step.report.error + accepted.report.error,
                  flow = estimate.creep_path - accepted.errors.creep_path;
     const bool moves  = std::max(errors.change, 0.5 * flow) > left;
@@ -274,8 +273,9 @@ namespace Viscoplastic
   TimeStepper<dim>::growth_since_estimate(const EvaluatedState<dim> &accepted,
                                           EvaluatedState<dim>       &end) const
   {
-    // A sum has another dual problem in each step, the error of cell means adds
-    // up, and what curved faces miss is no part of a checkpoint.
+    // Excluded are sums, which have a new dual problem in each step, cell
+    // means, whose error adds up, and curved contact, of which checkpoints do
+    // not keep all.
     if (error_estimator == nullptr || !accepted.is_solution ||
         accepted.state.k == 0. || accepted.space_estimate.rate_defect > 0. ||
         space_estimator->has_curved_contact() ||
@@ -303,7 +303,7 @@ namespace Viscoplastic
     if (growth || (step.is_unchanged && estimate_is_of_state_alone))
       end.space_estimate = accepted.space_estimate;
     else
-      // The step may have gone where the law has no value.
+      // The law may have no value at the end of the step.
       end.space_estimate = as_part_of_step(end.state.n, end.state.t, [&] {
         return space_estimator->estimate(end.state, end.forces);
       });
@@ -330,7 +330,7 @@ namespace Viscoplastic
   void
   TimeStepper<dim>::estimate_quantity(EvaluatedState<dim> &initial)
   {
-    // There is no work before the first step.
+    // A sum over steps has no value before the first one.
     if (!quantity_estimator || !initial.is_solution || scene.quantity->is_sum())
       return;
     TimerOutput::Scope phase(timer, "estimate");

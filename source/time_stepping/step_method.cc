@@ -6,8 +6,8 @@ namespace Viscoplastic
 {
   namespace
   {
-    /// Whether all multipliers are in their balls, and so a solution at rest;
-    /// obstacles must not move.
+    /// Whether the old multipliers are within the new bounds, and so a solution
+    /// at rest; false if obstacles may move.
     template <int dim>
     bool
     holds_at_rest(const ContactFace<dim>    &face,
@@ -56,7 +56,7 @@ namespace Viscoplastic
         if (!face->layout().points[p].is_obstacle)
           contact.sticks[p] = contact.bound[p] > 0.;
       }
-    // The bound on the error is that of the solve.
+    // The bound on the error is that of the old solve.
     report            = problem.old.report;
     report.iterations = report.linear_iterations = report.bound_iterations = 0;
     report.contraction                                                     = 0.;

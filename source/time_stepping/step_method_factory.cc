@@ -28,7 +28,7 @@ namespace Viscoplastic
             }
           catch (const StepBeyondStability &)
             {
-              // Heun's method sees the end of the step, too.
+              // Heun's method checks the end of the step, too.
             }
         return implicit_step.advance(problem);
       }
@@ -45,7 +45,7 @@ namespace Viscoplastic
         return explicit_step.elastic_solver();
       }
 
-      // Implicit steps among others keep nothing.
+      // Implicit steps among explicit ones keep no preconditioner.
       std::optional<PreconditionerState>
       preconditioner_state() const override
       {

@@ -10,13 +10,13 @@ namespace Viscoplastic
 {
   namespace
   {
-    /// What rounding may make of the error, relative to the solution, before no
-    /// number means anything.
+    /// Solutions with a larger error by rounding, relative to their size, are
+    /// refused.
     constexpr double largest_rounding = 1e-3;
-    /// What rounding leaves of displacements, of their increments, in which the
-    /// face is solved, and of loads that cancel, relative to their size.
+    /// The rounding, relative to their size, of displacements, of their
+    /// increments, in which the face is solved, and of loads that cancel.
     constexpr double rounding = 100. * std::numeric_limits<double>::epsilon();
-    /// Squares of less are no numbers.
+    /// The squares of smaller numbers underflow.
     constexpr double least_step = 1e-150;
   } // namespace
 
@@ -68,8 +68,8 @@ namespace Viscoplastic
   {
     const Discretization<dim>  &d     = discretization;
     const AdmissibleSpace<dim> &space = d.space;
-    // Start from the last displacement, moved on by the last velocity, except
-    // where points stick: they go with the foundation.
+    // Start from the last displacement, extrapolated by the velocity, except
+    // where points stick: these move with the foundation.
     const DistributedVector &old_u = problem.old_u();
     DistributedVector        u(old_u), velocity(old_u);
     space.to_frames(guess.velocity, velocity);
@@ -142,7 +142,7 @@ namespace Viscoplastic
       sum +=
         diagonal.begin()[discretization.face_restriction().positions()[k]] *
         square(data.foundation_step[k]);
-    // A body that is carried along may begin with prescribed values alone.
+    // Prescribed values may be all that moves a body that is carried along.
     for (std::size_t i = 0; i < space.excluded().size(); ++i)
       {
         const double stiffness = diagonal.begin()[i];
@@ -180,13 +180,13 @@ namespace Viscoplastic
                                 const double       size,
                                 ContactReport     &report)
   {
-    // By how much the matrix is larger than the energy of u says: about the
-    // root of its condition number, and rounding makes of residuals up to its
-    // square.
+    // The ratio of the size in the norm of the diagonal to the energy norm is
+    // about the root of the condition number, and rounding of residuals may be
+    // magnified by up to its square.
     constexpr double epsilon   = std::numeric_limits<double>::epsilon();
     const double     data_size = size_of(data, u), ratio = data_size / size;
-    // Of a body that moves without strain, under no loads, nothing but rounding
-    // is left, of its energy, too.
+    // Skip bodies that move without strain under no loads, whose energy is
+    // nothing but rounding.
     if (!(epsilon * ratio * ratio > report.tolerance) ||
         size <= report.rounding_error ||
         (epsilon * ratio * ratio > 1. &&
@@ -264,7 +264,7 @@ namespace Viscoplastic
             DistributedVector change(u);
             change -= data.old_u;
             Vector<double> increment = d.face->restriction().gather(change);
-            // (3.20): the minimum of J is its solution.
+            // The minimum of J solves (3.20).
             const auto   solve = bulk_solver->begin(data.right_side, u, scale);
             const double seconds_to_begin = timer.wall_time();
             report                        = contact_solver.solve(
@@ -289,9 +289,9 @@ namespace Viscoplastic
       }
     catch (const ExceptionBase &)
       {
-        // A ramp that begins like exp(-1/t) may begin with so little: what it
-        // leaves undone is as good as nothing. A whole run of this kind is
-        // refused (Recorder::check_sizes()).
+        // The data of a ramp that begins like exp(-1/t) may be this small; then
+        // a failed solve does no harm. A whole run of this kind is refused
+        // (Recorder::check_sizes()).
         if (!(data_size < least_step))
           throw;
       }
@@ -324,7 +324,7 @@ namespace Viscoplastic
     for (unsigned int p = 0; p < contact.n_points(); ++p)
       {
         const ContactLayout::Point &point = face.points[p];
-        // Nothing holds a point without friction.
+        // A point without friction is not held.
         if (!point.is_obstacle)
           contact.sticks[p] = contact.bound[p] > 0.;
         if (point.gives_way())
@@ -335,14 +335,13 @@ namespace Viscoplastic
       }
     DistributedVector right(right_side);
     if (springs)
-      // From where the body is, springs carry nothing.
+      // The springs carry nothing at the present place of the body.
       springs->add_load(u, right);
-    // As a rule the change is less than a hundredth of u. But next to
-    // incompressible a new mesh may bring much more energy than there is.
-    // Errors in the energy norm may be so many times larger than in the
-    // residual.
-    // What is left all the same is an error of the state that the next step
-    // begins from, and its equilibrium is solved for afresh.
+    // As a rule the change is less than a hundredth of u, but in a nearly
+    // incompressible body a new mesh may bring much more energy than there is,
+    // and takes several corrections. Errors in the energy norm may be `margin`
+    // times those of the residual. The next step solves for its equilibrium
+    // afresh.
     constexpr double margin    = 10.;
     const double     reduction = std::clamp(100. * tolerance, 1e-10, 1e-4);
     solve_truncated(*bulk_solver->begin(right, u, scale),

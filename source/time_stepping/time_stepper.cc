@@ -37,7 +37,7 @@ namespace Viscoplastic
 
   namespace
   {
-    /// The work of friction per area up to the end of a step.
+    /// Add the friction work of a step per area to that of the steps before.
     template <int dim>
     void
     add_friction_work(const Discretization<dim> &discretization,
@@ -83,7 +83,7 @@ namespace Viscoplastic
   AcceptedStep<dim>
   TimeStepper<dim>::next(const EvaluatedState<dim> &accepted)
   {
-    // What settled the state on a new mesh has done so.
+    // This solver has served to settle the state on a new mesh.
     if (!quantity_estimator)
       elastic_solver.reset();
     const State<dim>       &state = accepted.state;
@@ -179,14 +179,14 @@ namespace Viscoplastic
             problem.bounds_follow_pressure = true;
             problem.given_bounds           = problem.bounds;
           }
-        // Without a pressure before, a fixed point is looked for from stick;
-        // of a body that only contact holds, from what statics needs, since
-        // foundations would carry off what nothing presses.
+        // Without an old pressure, the solve starts from stick; for a body that
+        // only contact holds, from bounds_that_hold(), since a moving
+        // foundation would carry off a body that nothing presses.
         const ContactState &old = accepted.state.contact;
         if (problem.bounds_follow_pressure && !d.space.is_held_by_contact() &&
             !has_computed_bounds(d, old, time_step.t, problem.slip_rates))
           {
-            // (Not where pieces meet: one may push along what another holds.)
+            // Not where pieces meet: one may push where another one holds.
             ContactState         pressed(problem.bounds);
             const ContactLayout &face = d.face->layout();
             for (unsigned int p = 0; p < pressed.n_points(); ++p)

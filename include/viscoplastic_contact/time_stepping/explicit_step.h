@@ -7,9 +7,9 @@
 namespace Viscoplastic
 {
   /// Forward Euler, the scheme (3.18)-(3.20) of the paper, and Heun's method:
-  /// z_n by G at known states, then (3.20) for u_n. The matrix is that of
-  /// a(.,.), whose solver serves all steps on a mesh. Elastic bodies take this
-  /// way, too.
+  /// z_n follows from G at known states, then u_n from (3.20). The matrix is
+  /// that of a(.,.), so that one solver serves all steps on a mesh. Elastic
+  /// bodies use this method, too.
   template <int dim>
   class ExplicitStep : public StepMethod<dim>
   {

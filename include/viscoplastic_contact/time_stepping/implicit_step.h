@@ -10,26 +10,26 @@ namespace Viscoplastic
   /// Backward Euler: z_n = z_{n-1} + k G(t_n, sigma_n, eps_n) and (3.20)
   /// together, by Newton's method for the bulk around the contact solver. In
   /// each iteration, z(eps) is replaced by its tangent C at the strain of an
-  /// iterate m, or by one from before if that does as well, and friction is
+  /// iterate m, or by an earlier one if that does as well, and friction is
   /// solved with that matrix:
   ///
   ///     a(u, v) + (z_m + C (eps(u) - eps(u_m)), eps(v)) + friction = L(v).
   ///
-  /// With a potential this is one convex minimization, J(u) -> min, and a step
-  /// along d = u - u_m is shortened where J' d = 0 if the whole one overshoots,
-  /// which J' tells without J; then J decreases always. Without one, the same
-  /// rule looks for a zero of the residual along d.
+  /// With a potential this is a convex minimization, J(u) -> min, and a step
+  /// along d = u - u_m that overshoots is shortened to where J' d = 0, so that
+  /// J always decreases. Without a potential, the same rule looks for a zero of
+  /// the residual along d.
   ///
   /// The iteration ends when (u, z(eps(u))) satisfies the equations to the
-  /// contact tolerance: what the tangent has missed, dz, is a residual whose
-  /// dual norm is at most that of dz.
+  /// contact tolerance: the linearization error dz is a residual whose dual
+  /// norm is at most the norm of dz.
   template <int dim>
   class ImplicitStep : public StepMethod<dim>
   {
   public:
-    /// @p takes_all_steps: whether the steps before and after this one are of
-    /// this method, too; then constant tangents and what the linear solver has
-    /// learnt with them stay from step to step.
+    /// @p takes_all_steps: whether all steps use this method. Then constant
+    /// tangents and the state of their linear solver are kept from step to
+    /// step.
     ImplicitStep(const Discretization<dim> &discretization,
                  TimerOutput               &timer,
                  const bool                 takes_all_steps = true);
@@ -62,13 +62,13 @@ namespace Viscoplastic
   private:
     class Newton;
 
-    /// The old state as the solution, if no datum changes and nothing flows;
-    /// otherwise nothing. Collective.
+    /// Return the old state as the solution if no datum changes and nothing
+    /// flows; otherwise nothing. Collective.
     std::optional<StepSolution<dim>>
     rest(const StepProblem<dim> &problem) const;
 
-    /// Set up tangents, matrix and solver at a strain and z; the result depends
-    /// on no earlier step.
+    /// Set up tangents, matrix and solver at the strains of @p ghosted_u and @p
+    /// z; the result depends on no earlier step.
     void
     linearize(const DistributedVector              &ghosted_u,
               const IrreversibleStress             &z,

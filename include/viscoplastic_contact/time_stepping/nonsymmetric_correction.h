@@ -27,25 +27,26 @@ namespace Viscoplastic
 
 
   /// Newton's method for the bulk and friction together where the tangents C of
-  /// backward Euler are not symmetric, and a symmetric matrix misses a part of
-  /// them. The contact solver has found, with that matrix, who sticks and who
-  /// slips; with these sets, the correction w solves
+  /// backward Euler are not symmetric, so that the symmetric matrix of the
+  /// contact solver misses a part of them. With the active sets that the
+  /// contact solver has found, the correction w solves
   ///
   ///     P (a_C(.,.) + springs) P w = P r,
   ///
-  /// where r is the exact residual with the forces of friction, P holds the
-  /// sticking points, and the springs are the turning stiffness of slipping
-  /// ones (see make_truncation()). GMRES, preconditioned by the solver of the
-  /// symmetric matrix; C itself is applied cell by cell and makes no matrix.
+  /// where r is the exact residual with the forces of friction, the projector P
+  /// holds sticking points, and the springs are the turning stiffness of
+  /// slipping ones (see make_truncation()). It is solved by GMRES,
+  /// preconditioned by the solver of the symmetric matrix; C is applied cell by
+  /// cell without a matrix.
   ///
-  /// A correction is taken as far as it decreases the exact residual in the
-  /// dual norm of the matrix, with slips that would reverse stopped, or not at
-  /// all. Keeps nothing from one call to the next.
+  /// A line search shortens the correction until the exact residual decreases
+  /// in the dual norm of the matrix, or rejects it; slips that would reverse
+  /// stop. Nothing is kept from one call to the next.
   template <int dim>
   class NonsymmetricCorrection
   {
   public:
-    /// @p solver: of the symmetric matrix. All arguments stay in use.
+    /// @p solver: of the symmetric matrix. Keeps references to all arguments.
     NonsymmetricCorrection(const Discretization<dim> &discretization,
                            const StepProblem<dim>    &problem,
                            BulkSolver                &solver);
@@ -60,12 +61,12 @@ namespace Viscoplastic
     {
       /// The step length of the line search; 0 if there is no descent.
       double share;
-      /// Linear iterations: of GMRES, or of the preconditioner's solves.
+      /// Iterations of GMRES or of the preconditioner, whichever are more.
       unsigned int iterations;
     };
 
-    /// Correct @p iterate, which the contact solver has left; the linear system
-    /// is solved to @p reduction. Collective.
+    /// Correct @p iterate, a result of the contact solver; the linear system is
+    /// solved to the relative accuracy @p reduction. Collective.
     Result
     correct(const double           reduction,
             const StressForStrain &z_for,
@@ -75,8 +76,8 @@ namespace Viscoplastic
     struct Operator;
     struct Preconditioner;
 
-    /// The residual minus the forces of the multipliers nearest to it, which @p
-    /// iterate gets.
+    /// The residual minus the forces of the multipliers that fit it best, which
+    /// are set in @p iterate.
     DistributedVector
     residual(NewtonIterate<dim> &iterate) const;
 
@@ -84,8 +85,8 @@ namespace Viscoplastic
     double
     dual_norm(const DistributedVector &r) const;
 
-    /// @p from + share w, where slips that would reverse stop instead; z is not
-    /// evaluated.
+    /// @p from + share w, but slips that would reverse stop, as do nodes at
+    /// obstacles; z is not evaluated.
     NewtonIterate<dim>
     move(const NewtonIterate<dim> &from,
          const DistributedVector  &w,

@@ -13,20 +13,20 @@ namespace Viscoplastic
   /// The proximal point method for bodies that only contact holds, whose matrix
   /// is singular: weak springs tie the contact nodes to where they are, the
   /// step is solved, and this is repeated from the solution until the springs
-  /// carry nothing. Between two solves the body settles as a whole where
-  /// contact balances its loads. Whether it can, statics says before the first
-  /// solve.
+  /// carry nothing. Between two solves a body on a compliant foundation is
+  /// moved as a whole to where contact balances its loads. Before the first
+  /// solve, bounds_that_hold() checks that contact can balance the loads.
   template <int dim>
   class ProximalSprings
   {
   public:
     explicit ProximalSprings(const Discretization<dim> &discretization);
 
-    /// The matrix with the springs; @p matrix stays in use. Collective.
+    /// Return @p matrix, which is kept by reference, with springs. Collective.
     const DistributedMatrix &
     attach(const DistributedMatrix &matrix);
 
-    /// Add to a load that of springs which are relaxed at @p u.
+    /// Add to @p load that of springs with the rest position @p u.
     void
     add_load(const DistributedVector &u, DistributedVector &load) const
     {
@@ -35,22 +35,22 @@ namespace Viscoplastic
       load += force;
     }
 
-    /// The bounds of friction with which a step is solved: @p bounds, raised
-    /// where bounds that follow the pressure could hold the body but these
-    /// cannot. Throws ExcMessage where no contact force balances the loads.
-    /// Collective.
+    /// Return the friction bounds for the solve of a step: @p bounds, raised if
+    /// bounds that follow the pressure can hold the body and @p bounds cannot.
+    /// Throws ExcMessage if no contact force balances the loads. Collective.
     std::vector<double>
     bounds_that_hold(const StepProblem<dim>    &problem,
                      const std::vector<double> &bounds) const;
 
-    /// Solves the step with the springs from u and contact, for a displacement
-    /// of the step before, a right side and a tolerance.
+    /// Solves the step with springs for u and contact. The arguments are the
+    /// displacement of the step before, the right side and the tolerance.
     using Solve = std::function<ContactReport(const DistributedVector &,
                                               const DistributedVector &,
                                               const double)>;
 
     /// Solve the step of @p problem by repeated calls of @p solve, which change
-    /// @p u and @p contact. Throws ExcMessage. Collective.
+    /// @p u and @p contact. Throws ExcMessage if the body does not come to
+    /// rest. Collective.
     ContactReport
     solve(const StepProblem<dim>  &problem,
           const DistributedVector &right_side,
@@ -60,34 +60,35 @@ namespace Viscoplastic
           ContactState            &contact) const;
 
   private:
-    /// Whether contact can balance the loads of a problem, with the pressure
-    /// that is to be found, or within given bounds. Collective.
+    /// Whether contact can balance the loads of a problem, with friction bounds
+    /// that follow the pressure to be found, or with given ones. Collective.
     Statics
     statics(const StepProblem<dim>    &problem,
             const std::vector<double> &bounds,
             const bool                 with_pressure) const;
 
-    /// The body and its loads as statics sees them. Collective.
+    /// The body and its loads as balance() and settle() take them. Collective.
     HeldBody
     held_body(const StepProblem<dim> &problem) const;
 
     /// Whether neither loads nor a foundation do work on a rigid motion, and
-    /// old contact forces were rounding. Collective.
+    /// old contact forces are rounding. Collective.
     bool
     rests(const StepProblem<dim>  &problem,
           const HeldBody          &body,
           const DistributedVector &right_side) const;
 
-    /// What springs hold after a solve: their energy norm, that of the
-    /// solution, and whether it is no more than the loads balance.
+    /// What springs carry after a solve: the norm in the springs, the energy
+    /// norm of the solution, and whether spring forces are negligible.
     struct Held
     {
       double in_springs, size;
       bool   in_balance;
     };
 
-    /// Add what they hold of @p change, the last one of @p u, to the error of
-    /// @p report; @p whole: how far the body was before. Collective.
+    /// Add the norm in the springs of @p change, the last change of @p u, to
+    /// the error of @p report. @p whole: the springs' rest position with all
+    /// rigid motion. Collective.
     Held
     measure(const StepProblem<dim>  &problem,
             const DistributedVector &right_side,
@@ -97,8 +98,8 @@ namespace Viscoplastic
             const DistributedVector &whole,
             ContactReport           &report) const;
 
-    /// Move u and the rest of the springs as a whole to where the loads are in
-    /// balance with soft ground. Collective.
+    /// Move u and the rest position of the springs by the rigid motion to where
+    /// the loads balance on a compliant foundation. Collective.
     void
     settle_whole(const StepProblem<dim>  &problem,
                  const HeldBody          &body,
@@ -107,8 +108,8 @@ namespace Viscoplastic
                  DistributedVector       &center,
                  DistributedVector       &u) const;
 
-    /// Why a body that still moves by @p change does not come to rest, as a
-    /// sentence. Collective.
+    /// A sentence on why a body that still moves by @p change does not come to
+    /// rest. Collective.
     std::string
     restlessness(DistributedVector change, const double left_by_rounding) const;
 
@@ -121,11 +122,11 @@ namespace Viscoplastic
       return std::sqrt(std::max(0., u * force));
     }
 
-    /// How many times as far the springs' rest should go as the last solve has
-    /// moved the body away from it, by what the last two have taught: the step
-    /// of Barzilai & Borwein (IMA J. Numer. Anal. 8, 1988) for the minimum of
-    /// the energy with springs, whose gradient is what they carry. With a
-    /// single motion it is the rule of the secant. Collective.
+    /// The step along @p change, the last motion of the body away from the rest
+    /// position of the springs, to a better rest position: the step of Barzilai
+    /// & Borwein (IMA J. Numer. Anal. 8, 1988) from the last two solves for the
+    /// minimum of the energy with springs, whose gradient is their force. It is
+    /// the secant rule for a single motion. Collective.
     double
     learned_step(const DistributedVector &last_center,
                  const DistributedVector &center,
@@ -147,13 +148,13 @@ namespace Viscoplastic
     /// The rigid motions that only contact can prevent.
     const std::vector<DistributedVector> motions;
     std::vector<DistributedVector>       orthonormal_motions;
-    /// Where springs act: components of contact nodes, as many as motions, that
-    /// constrain these; positions among the owned degrees of freedom.
+    /// The degrees of freedom with springs, as local indices: as many
+    /// components of contact nodes as there are motions, which they constrain.
     std::vector<unsigned int> supports;
     const DistributedMatrix  *singular_matrix = nullptr;
     DistributedMatrix         regular_matrix;
     DistributedVector         springs; // a diagonal matrix
-    /// What rounding in the matrix leaves in the springs, relative to u.
+    /// The rounding of the matrix in the springs, relative to u.
     double rounding = 0.;
   };
 } // namespace Viscoplastic

@@ -32,8 +32,8 @@ namespace Viscoplastic
   };
 
 
-  /// Call @p work and throw what goes wrong as a failure of step @p n to time
-  /// @p t.
+  /// Return the result of @p work, and turn its exceptions into the failure of
+  /// step @p n to time @p t, except std::bad_alloc.
   template <typename Work>
   auto
   as_part_of_step(const unsigned int n, const double t, const Work &work)
@@ -66,8 +66,8 @@ namespace Viscoplastic
     double change = 0., size = 0.;
     /// The time error accumulated in earlier steps.
     double before = 0.;
-    /// The part of the indicator that comes at some times only: slip that comes
-    /// to rest or turns, bounds that change, data that swing.
+    /// The part of the indicator due to events: slip that comes to rest or
+    /// turns, bounds that change, data that oscillate.
     double of_events = 0.;
   };
 
@@ -76,15 +76,15 @@ namespace Viscoplastic
   struct StepCounts
   {
     unsigned int rejected = 0, events = 0, failed = 0;
-    /// Accepted at the smallest size although the error is too large.
+    /// Steps accepted at the smallest size although the error is too large.
     unsigned int unresolved = 0;
   };
 
 
-  /// Chooses the time steps: those of the phases; shorter ones where stability
-  /// asks for it; or steps by their error. What it knows of the run is here, so
-  /// that a step itself is a function of the accepted state, the time and the
-  /// step size alone.
+  /// Chooses the time steps: those of the phases, shorter ones where stability
+  /// requires it, or steps controlled by their error. It keeps all memory of
+  /// the run, so that a step itself is a function of the accepted state, the
+  /// time and the step size alone.
   ///
   /// With `Step control/Tolerance' = TOL, a step is accepted if its
   /// contribution d to the time error (ErrorEstimate::time_indicator) satisfies
@@ -93,23 +93,23 @@ namespace Viscoplastic
   ///
   /// with the largest energy norm of the run so far as size and the end time T.
   /// The sum over the run is then at most TOL times the size of the solution
-  /// plus the length of its path. An absolute bound would not do: a solution
+  /// plus the length of its path. The change is in the bound since a solution
   /// that starts from zero has no size yet. The next step follows from the
   /// error ratios of the last two by a proportional-integral controller
-  /// (Gustafsson; Hairer and Wanner II, IV.2), whose exponents are those of the
-  /// order p in which that ratio depends on k.
+  /// (Gustafsson; Hairer and Wanner II, IV.2), whose exponents follow from the
+  /// order p of that ratio in k.
   ///
-  /// In a run to a tolerance, of which TOL is the part of the time steps, the
-  /// signed sum of all contributions has to stay below TOL size. With D what it
-  /// has come to, a step may use of the rest TOL size - D what it covers of the
-  /// remaining time or of the change of the solution,
+  /// In a run to a tolerance, TOL is the share of the time steps in it, and the
+  /// signed sum D of all contributions has to stay below TOL size. A step may
+  /// use that part of the rest TOL size - D which it covers of the remaining
+  /// time or of the change of the solution,
   ///
   ///     d <= (TOL size - D) min(1, max(k/(T - t), change/size)/c),
   ///
-  /// with c <= 1 the ratio of the signed to the unsigned sum up to now, or D to
-  /// TOL size if that is larger: where contributions cancel, each of them may
-  /// be larger, but the less the nearer the sum is to its bound. A rest of 0.05
-  /// of the bound is always there, so that steps do not become ever smaller.
+  /// with c <= 1 the ratio of D to the unsigned sum so far, or to TOL size if
+  /// that is smaller: where contributions cancel, each may be larger, but less
+  /// so near the bound. The rest is at least 0.05 of the bound, so that steps
+  /// do not become ever smaller.
   class StepControl
   {
   public:
@@ -136,8 +136,8 @@ namespace Viscoplastic
       has_estimate = value;
     }
 
-    /// Also end steps at these times, if they are adaptive. A jump gets a short
-    /// step of its own.
+    /// Also end adaptive steps at these times of kinks and jumps of the data. A
+    /// jump gets a short step of its own.
     void
     land_on(const std::vector<double> &kinks, const std::vector<double> &jumps);
 
@@ -148,9 +148,9 @@ namespace Viscoplastic
       present.size = size;
     }
 
-    /// The norms of the dual solution of a coarse run at times: errors that a
-    /// quantity does not feel yet, as a force while all points slip, it may
-    /// feel later.
+    /// Set the norms of the dual solution of a coarse run at given times:
+    /// errors may affect a quantity only later, as a force while all points
+    /// slip.
     void
     expect_dual_norms(const std::vector<double> &times,
                       const std::vector<double> &norms)
@@ -165,7 +165,7 @@ namespace Viscoplastic
       expect_dual_norms(other.dual_times, other.dual_norms);
     }
 
-    /// The largest of these norms from a time on; 0 if nothing is known.
+    /// The largest dual norm from time @p t on; 0 if none is known.
     double
     later_dual_norm(const double t) const;
 
@@ -176,7 +176,7 @@ namespace Viscoplastic
       return is_on || subdivides;
     }
 
-    /// Whether the stability limit of explicit schemes decides on steps.
+    /// Whether the stability limit of explicit schemes limits the steps.
     bool
     needs_limit() const
     {
@@ -189,16 +189,16 @@ namespace Viscoplastic
     TimeStep
     propose(const unsigned int n, const double t, const double limit) const;
 
-    /// Whether a step will do; otherwise propose() gives a shorter one. @p
-    /// has_event: something happens in it whose time is wanted.
+    /// Whether a step is accepted; otherwise propose() gives a shorter one. @p
+    /// has_event: whether an event happens in it whose time matters.
     bool
     accepts(const TimeStep   &step,
             const StepErrors &errors,
             const bool        has_event);
 
-    /// The step that has just been accepted is to be repeated on another mesh.
-    /// There it may do more: what the finer mesh finds in the stress relaxes at
-    /// once, a change of rates that shorter steps do not make smaller.
+    /// Repeat the step that has just been accepted on another mesh. Its error
+    /// may be larger there: stresses that a finer mesh finds relax at once, a
+    /// change of rates that shorter steps do not reduce.
     void
     repeat()
     {
@@ -206,23 +206,23 @@ namespace Viscoplastic
       present = before;
     }
 
-    /// A step has failed: whether propose() gives a shorter one.
+    /// Whether propose() gives a shorter step after this one has failed.
     bool
     retries(const TimeStep &step, const bool for_stability);
 
-    /// About how many steps the run will have, after n steps to t, the last
-    /// ones of size k. Steps by their error grow from k to what the error of
-    /// the last one would have allowed, at most to @p limit, 2/r of an explicit
-    /// scheme, or, if there is none, on as that has grown lately, as in a
-    /// relaxation. In later phases they begin with that of the phase.
+    /// Estimate the number of steps of the run after @p n steps to @p t, the
+    /// last ones of size @p k. Adaptive steps grow from k to the size that the
+    /// last error allows, at most to @p limit, 2/r of an explicit scheme;
+    /// without one they go on to grow at the recent rate, as in a relaxation.
+    /// Later phases begin with their own step size.
     double
     expected_steps(const unsigned int n,
                    const double       t,
                    const double       k,
                    const double       limit) const;
 
-    /// Whether events of a step from time t count: after a kink of the data
-    /// slip may end at once, which says nothing.
+    /// Whether t is the start, a kink of the data, a phase end or a landing
+    /// time, after which slip may end at once without being an event.
     bool
     is_kink(const double t) const
     {
@@ -232,9 +232,8 @@ namespace Viscoplastic
              std::binary_search(landing_times.begin(), landing_times.end(), t);
     }
 
-    /// Whether data have a kink or jump in (from, to], up to rounding, of which
-    /// land_on() has been told: differences of what steps before and after it
-    /// have seen say nothing.
+    /// Whether data have a kink or jump known by land_on() in (from, to], up to
+    /// rounding: differences between steps before and after it mean nothing.
     bool
     has_kink_within(const double from, const double to) const
     {
@@ -277,31 +276,31 @@ namespace Viscoplastic
       /// The largest energy norm so far.
       double size         = 0.;
       bool   was_rejected = false;
-      /// The end of a step that was rejected for an event, which has not been
-      /// met yet.
+      /// The end of a step that was rejected for an event that has not been
+      /// reached yet.
       double event_before = 0.;
       /// The sum of the indicators of all steps.
       double unsigned_sum = 0.;
       /// The step size that the error of the last accepted step would have
       /// allowed, and the logarithm of its growth from step to step: a mean
       /// with weights that halve in about seven steps, and their sum. Not
-      /// archived, a run that goes on learns them anew.
+      /// archived: resumed runs start anew.
       double allowed = 0., growth = 0., growth_weight = 0.;
     };
 
     double
     next_target(const double t) const;
 
-    /// The contribution that a step may make to the time error; @p size as it
-    /// is with this step.
+    /// The contribution that a step may make to the time error; @p size: the
+    /// largest energy norm, this step included.
     double
     allowed_error(const TimeStep   &step,
                   const StepErrors &errors,
                   const double      size) const;
 
-    /// By how much the next step may be longer than an accepted one of size k,
-    /// whose error is @p ratio times the allowed one. Remembers what it says of
-    /// later ones.
+    /// The factor by which the next step may be longer than an accepted one of
+    /// size k, whose error is @p ratio times the allowed one. Updates
+    /// `present`.
     double
     growth_allowed_by(const double ratio, const double k);
 
@@ -332,7 +331,7 @@ namespace Viscoplastic
 
     /// The present state, and that before the last step was accepted.
     Memory present, before;
-    /// The state that the step to be repeated has left on the mesh before.
+    /// The state after the step to be repeated, on the mesh before.
     std::optional<Memory> verdict;
     StepCounts            n;
   };

@@ -14,9 +14,9 @@
 namespace Viscoplastic
 {
   /// A scheme for one step, on one mesh. A step is a function of its problem
-  /// alone, up to what an iterative linear solver has learnt from earlier
-  /// solves (PreconditionerState): with that restored, the same problem gives
-  /// the same bits.
+  /// alone, except for what an iterative linear solver keeps of earlier solves
+  /// (PreconditionerState): with that restored, the same problem gives the same
+  /// bits.
   template <int dim>
   class StepMethod
   {
@@ -38,8 +38,8 @@ namespace Viscoplastic
     virtual std::optional<PreconditionerState>
     preconditioner_state() const = 0;
 
-    /// Go on from an accepted state on this mesh as the method did that had
-    /// this state of its preconditioner there. Collective.
+    /// Restore the method as it was at the state @p accepted on this mesh, when
+    /// it had this state of its preconditioner. Collective.
     virtual void
     restore(const EvaluatedState<dim>                &accepted,
             const std::optional<PreconditionerState> &preconditioner) = 0;
@@ -65,9 +65,9 @@ namespace Viscoplastic
 
 
   /// The scheme that a scene asks for: explicit, implicit, or explicit up to
-  /// the stability limit and implicit beyond it. @p discretization has its
-  /// matrix; it and @p timer, which gets the seconds by phase, stay in use.
-  /// Collective.
+  /// the stability limit and implicit beyond it. Keeps references to @p
+  /// discretization, which has its matrix, and to @p timer, which gets the
+  /// seconds by phase. Collective.
   template <int dim>
   std::unique_ptr<StepMethod<dim>>
   make_step_method(const Discretization<dim> &discretization,

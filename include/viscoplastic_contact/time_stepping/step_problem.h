@@ -15,9 +15,9 @@
 
 namespace Viscoplastic
 {
-  /// The data of one step from t_{n-1} to t_n: what (3.20) is made of besides
-  /// the form a(.,.) and the irreversible stress z_n. In total form, with
-  /// Delta u = u_n - u_{n-1}:
+  /// The data of one step from t_{n-1} to t_n: all that (3.20) needs besides
+  /// the form a(.,.) and the irreversible stress z_n. In total form, with Delta
+  /// u = u_n - u_{n-1}:
   ///
   ///     a(u_n, v - Delta u) + (z_n, eps(v - Delta u)) + j_n(v) - j_n(Delta u)
   ///       >= L(t_n; v - Delta u)   for all admissible v.
@@ -36,28 +36,26 @@ namespace Viscoplastic
     /// The error at which iterations stop, relative to the solution.
     double                  tolerance;
     const SolverParameters &parameters;
-    /// The state at t_{n-1}, which stays as it is, and G there (null where the
-    /// step does not ask for it).
+    /// The state at t_{n-1}, and G there (null if the step does not need it).
     const EvaluatedState<dim> &old;
     const FlowRate            *old_rate;
 
-    /// Whether u_{n-1} and its multipliers satisfy (3.20) of this step as well
-    /// as that of their own unless z changes: neither loads, prescribed
-    /// displacements nor foundations have moved, no bound has come below a
-    /// multiplier, and the tolerance allows their error. The same on all
-    /// ranks.
+    /// Whether u_{n-1} and its multipliers solve (3.20) of this step, too,
+    /// unless z changes: loads, prescribed displacements and foundations are
+    /// unchanged, no bound is below a multiplier, and the tolerance allows
+    /// their error. The same on all ranks.
     bool data_are_unchanged = false;
 
-    /// Whether some bounds are those of the pressure of this step, and the part
-    /// of all of them that does not depend on it.
+    /// Whether some friction bounds follow the pressure of this step, and the
+    /// part of all bounds that does not depend on it.
     bool                bounds_follow_pressure = false;
     std::vector<double> given_bounds           = {};
     /// Slip rates at t_{n-1}, on which friction bounds depend; empty if none
     /// does.
     std::vector<double> slip_rates = {};
 
-    /// The time for which the velocity of a state is extrapolated: at most this
-    /// step, and not far beyond the step it is from, which may have been a jump
+    /// The time for which to extrapolate with the velocity of @p state: this
+    /// step, but at most twice the step of that velocity, which may be a jump
     /// in a tiny step.
     double
     time_ahead(const State<dim> &state) const
@@ -82,21 +80,21 @@ namespace Viscoplastic
 
 
 
-  /// The report of a step method on a step, beside its end state.
+  /// The report of a step method on a step, besides its end state.
   struct StepOutcome
   {
     ContactReport report;
-    /// 2/r; infinite without viscosity. Backward Euler, which may pass it,
-    /// reports that of the end of the step.
+    /// The stability limit 2/r; infinite without viscosity. Backward Euler,
+    /// which may exceed it, reports the limit at the end of the step.
     double step_limit = std::numeric_limits<double>::infinity();
     /// The place where r is largest; the origin where r is zero.
     Point<3> critical_position;
     /// The volume in which stresses are beyond the cap of their law.
     double capped_volume = 0.;
-    /// Whether it is a step of backward Euler, and of how many iterations.
+    /// Whether the step is one of backward Euler, and its Newton iterations.
     bool         is_implicit       = false;
     unsigned int newton_iterations = 0;
-    /// Whether the state is that of the step before, without a solve.
+    /// Whether the state of the step before was taken over without a solve.
     bool is_unchanged = false;
 
     /// Take stability limit and capped volume from G within the step.
@@ -119,9 +117,9 @@ namespace Viscoplastic
   struct StepSolution : public StepOutcome
   {
     State<dim> state;
-    /// irreversible_forces() of the state, where the scheme has made them.
+    /// irreversible_forces() of the state, if the scheme has computed them.
     DistributedVector irreversible;
-    /// G at the end of the step, where the scheme has evaluated it.
+    /// G at the end of the step, if the scheme has evaluated it.
     std::optional<FlowRate> end_rate;
 
     explicit StepSolution(const StepProblem<dim> &problem)
@@ -133,7 +131,7 @@ namespace Viscoplastic
       state.history   = problem.old.state.history;
     }
 
-    /// Make the state the old one with zero velocity; z stays.
+    /// Set the state to the old one with zero velocity, but keep z.
     void
     stay(const StepProblem<dim>     &problem,
          const AdmissibleSpace<dim> &space,

@@ -20,8 +20,8 @@ namespace Viscoplastic
   public:
     explicit StepSolver(const Discretization<dim> &discretization);
 
-    /// Solve with @p matrix from now on, which stays in use. @p
-    /// max_poissons_ratio: of the material that it stands for. Collective.
+    /// Solve with @p matrix from now on, which is kept by reference. @p
+    /// max_poissons_ratio: the largest one of the material. Collective.
     void
     set_matrix(const DistributedMatrix &matrix,
                const double             max_poissons_ratio);
@@ -58,11 +58,11 @@ namespace Viscoplastic
                   const State<dim>       &guess,
                   ContactState           &contact) const;
 
-    /// Solve from @p u and @p contact, which take the solution up.
-    /// @p right_side is the load of the problem less what does not depend on u;
-    /// @p tolerance is relative. Where Coulomb's law takes the pressure of the
-    /// step itself, it is solved with the step (CoulombLaw), or the fixed point
-    /// p of p -> p(rho = mu p) is found by solving again, as the scene says.
+    /// Solve the step from @p u and @p contact, which are set to the solution.
+    /// @p right_side is the load of the problem minus internal forces that do
+    /// not depend on u; @p tolerance is relative. Coulomb's law with the
+    /// pressure of the step itself is solved within the step (CoulombLaw), or
+    /// by a fixed-point iteration of p -> p(rho = mu p), as the scene says.
     /// Throws ExcMessage. Collective.
     ContactReport
     solve(const StepProblem<dim>  &problem,
@@ -71,24 +71,24 @@ namespace Viscoplastic
           DistributedVector       &u,
           ContactState            &contact);
 
-    /// Move @p u, in frames, into equilibrium with @p right_side while all
-    /// points with friction, and those that touch an obstacle, stay where they
-    /// are. One linear solve to the
-    /// relative error @p tolerance. Throws ExcMessage. Collective.
+    /// Move @p u, in nodal frames, into equilibrium with @p right_side, while
+    /// all points with friction and those that touch an obstacle stay in place.
+    /// One linear solve to the relative error @p tolerance. Throws ExcMessage.
+    /// Collective.
     void
     solve_with_held_friction(const DistributedVector &right_side,
                              const double             tolerance,
                              ContactState             contact,
                              DistributedVector       &u);
 
-    /// Displacement and velocity of the end of a step from u in frames.
+    /// Set displacement and velocity of @p state from u in nodal frames.
     void
     set_displacement(const StepProblem<dim>  &problem,
                      const DistributedVector &u,
                      State<dim>              &state) const;
 
   private:
-    /// The vectors to which the solution of a solve is proportional.
+    /// The data of a solve, which give the scale of its solution.
     struct Data
     {
       const DistributedVector &old_u, &load, &right_side;
@@ -112,8 +112,8 @@ namespace Viscoplastic
                        DistributedVector       &u);
 
     /// solve() with Coulomb's law of the pressure of the step itself, by
-    /// Newton's method. Where its linear systems make it doubtful that there is
-    /// one solution, other starts are tried, and the report says so.
+    /// Newton's method. If its linear systems cast doubt on uniqueness, other
+    /// starts are tried, and the report tells what they have found.
     ContactReport
     solve_with_own_pressure(const StepProblem<dim>  &problem,
                             const DistributedVector &right_side,
@@ -141,11 +141,11 @@ namespace Viscoplastic
                   ContactState            &contact,
                   const CoulombLaw        *law);
 
-    /// Count what rounding of residuals may leave of the error of a solution
-    /// @p u of this @p size with contact, where that is more than the
-    /// tolerance: as dear as some solves, so it is asked for only where
-    /// stiffness differs much within the body. Throws ExcMessage where it
-    /// leaves no solution. Collective.
+    /// Add the error that rounding of residuals may cause in a solution @p u of
+    /// this @p size with contact to @p report, if it is above the tolerance. It
+    /// costs as much as a few solves, so it is computed only if stiffness
+    /// varies much within the body. Throws ExcMessage if rounding is too large.
+    /// Collective.
     void
     add_rounding(const Data        &data,
                  DistributedVector &u,

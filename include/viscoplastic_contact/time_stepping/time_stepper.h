@@ -36,8 +36,8 @@ namespace Viscoplastic
 
 
 
-  /// What a TimeStepper has kept of steps before the last one, so that a run
-  /// that goes on from a checkpoint goes on bit by bit.
+  /// What a TimeStepper keeps of steps before the last one, so that a run that
+  /// is resumed from a checkpoint gives the same bits.
   template <int dim>
   struct StepperMemory
   {
@@ -49,41 +49,42 @@ namespace Viscoplastic
 
 
 
-  /// Makes the steps of a run on one mesh: proposes a step, tries it, judges
-  /// it, and tries a shorter one until one will do. A step that is tried
-  /// changes neither the state that it starts from nor anything here; what it
-  /// leaves in an iterative linear solver is undone when it is rejected.
+  /// Makes the steps of a run on one mesh: proposes a step, solves it,
+  /// estimates its error, and tries shorter ones until one is accepted. A trial
+  /// changes neither the state that it starts from nor the stepper; changes of
+  /// an iterative linear solver are undone if it is rejected.
   template <int dim>
   class TimeStepper
   {
   public:
-    /// All arguments stay in use. @p error_estimator is null if there is none.
+    /// Keeps references to all arguments. @p error_estimator may be null.
     TimeStepper(const Discretization<dim> &discretization,
                 const ErrorEstimator<dim> *error_estimator,
                 StepControl               &control,
                 TimerOutput               &timer);
 
-    /// The next step from a state. Throws StepFailure if none will do.
+    /// Make the next step from a state. Throws StepFailure if none is accepted.
     /// Collective.
     AcceptedStep<dim>
     next(const EvaluatedState<dim> &accepted);
 
-    /// A step of given size, not judged yet. @p old_rate is G at the start, or
-    /// null where needs_rate() is false. Throws StepFailure. Collective.
+    /// Make a step of given size without estimating its error. @p old_rate is G
+    /// at the start, or null where needs_rate() is false. Throws StepFailure.
+    /// Collective.
     AcceptedStep<dim>
     try_step(const EvaluatedState<dim> &accepted,
              const FlowRate            *old_rate,
              const TimeStep            &time_step);
 
-    /// Bring an initial state into equilibrium with the loads at t = 0; its
-    /// forces are those of the equilibrium then. Collective.
+    /// Bring an initial state into equilibrium with the loads at t = 0, and set
+    /// its forces. Collective.
     ContactReport
     equilibrate(EvaluatedState<dim> &initial);
 
     /// Bring a state that came from another mesh into equilibrium with the
     /// loads at its time; points with friction stay where they are, and the
-    /// next step lets them slip. A displacement that is only interpolated would
-    /// flow, and store energy, by stresses that nothing balances. Collective.
+    /// next step lets them slip. Without this, the unbalanced stresses of an
+    /// interpolated displacement would cause flow and store energy. Collective.
     void
     settle(EvaluatedState<dim> &carried);
 
@@ -96,12 +97,12 @@ namespace Viscoplastic
     void
     estimate_quantity(EvaluatedState<dim> &initial);
 
-    /// The part of a checkpoint beside the accepted state. Collective.
+    /// The part of a checkpoint besides the accepted state. Collective.
     StepperMemory<dim>
     memory() const;
 
-    /// Go on from an accepted state on this mesh as the stepper did that had
-    /// this memory there. Collective. Throws ExcMessage.
+    /// Restore the stepper as it was at the state @p accepted on this mesh,
+    /// when it had this memory. Collective. Throws ExcMessage.
     void
     restore(const EvaluatedState<dim> &accepted,
             const StepperMemory<dim>  &memory);
@@ -136,23 +137,24 @@ namespace Viscoplastic
     }
 
   private:
-    /// What a step is judged by; its errors are known then. Throws StepFailure.
+    /// Return the errors that decide whether a step is accepted, and set those
+    /// of its end state. Throws StepFailure.
     StepErrors
     assess(const EvaluatedState<dim> &accepted,
            const FlowRate            *old_rate,
            AcceptedStep<dim>         &step);
 
-    /// Make the space estimate of the end of a step, or take that of the state
-    /// before times @p growth. Throws StepFailure. Collective.
+    /// Compute the space estimate of the end of a step, or take that of the
+    /// state before times @p growth. Throws StepFailure. Collective.
     void
     estimate_step(const EvaluatedState<dim>   &accepted,
                   const std::optional<double> &growth,
                   AcceptedStep<dim>           &step) const;
 
-    /// The energy norm at the end of a step over that before it, in which
-    /// proportion its space estimate is that of the state before: of states
-    /// that have hardly moved since one has been made. The time errors of the
-    /// step are known. Collective.
+    /// The ratio of the energy norms at the end of a step and before it, by
+    /// which the old space estimate is scaled if the state has hardly moved
+    /// since an estimate was computed; otherwise nothing. The time errors of
+    /// the step must be set. Collective.
     std::optional<double>
     growth_since_estimate(const EvaluatedState<dim> &accepted,
                           EvaluatedState<dim>       &end) const;
@@ -167,7 +169,7 @@ namespace Viscoplastic
     StepSolver<dim> &
     solver_of_elasticity();
 
-    /// The solver of a tangent; @p is_new: another one than last. Collective.
+    /// The solver of a tangent; @p is_new: whether it has changed. Collective.
     BulkSolver &
     solver_of(const TangentMatrix<dim> &tangent, const bool is_new);
 
@@ -179,12 +181,12 @@ namespace Viscoplastic
     TimerOutput               &timer;
     /// The estimator; null where a scene asks for no estimate.
     std::unique_ptr<SpaceEstimator<dim>> space_estimator;
-    /// Whether no load that it looks at depends on time.
+    /// Whether no load or bound in the space estimate depends on time.
     const bool                       estimate_is_of_state_alone;
     std::unique_ptr<StepMethod<dim>> step_method;
     /// Null where a scene asks for no quantity.
     std::unique_ptr<QuantityEstimator<dim>> quantity_estimator;
-    /// Of a(.,.) where steps have other matrices; made when it is needed.
+    /// The solver of a(.,.) where steps have other matrices; made on demand.
     std::unique_ptr<StepSolver<dim>> elastic_solver;
     /// The solver of the tangents of a quantity's dual problem.
     std::unique_ptr<StepSolver<dim>> tangent_solver;

@@ -17,7 +17,7 @@ namespace Viscoplastic
     std::set<types::boundary_id>
     boundaries_at(const AdmissibleSpace<dim> &space, const Point<dim> &position)
     {
-      // Which ranks see its faces, not only the one that owns it.
+      // Ranks other than the owner of the node may own cells at it.
       std::set<types::boundary_id> here;
       for (const auto &cell : space.cells)
         for (const unsigned int f : cell->face_indices())
@@ -30,8 +30,8 @@ namespace Viscoplastic
 
 
 
-    /// The node with the largest of some forces, and its boundaries. Forces of
-    /// hanging nodes are zero.
+    /// Find the node with the largest of @p forces, and its boundaries. Forces
+    /// of hanging nodes are zero.
     template <int dim>
     void
     locate_largest_force(const AdmissibleSpace<dim>  &space,
@@ -61,7 +61,7 @@ namespace Viscoplastic
 
 
 
-    /// What a condition prescribes of u: the directions, and the values there.
+    /// The directions in which a condition prescribes u, and the values.
     template <int dim>
     std::vector<std::pair<Tensor<1, dim>, double>>
     prescribed(const BoundaryCondition<dim> &condition,
@@ -96,8 +96,8 @@ namespace Viscoplastic
 
 
 
-    /// Find out which obstacles are touched at t = 0. Throws ExcMessage where
-    /// the body is beyond one.
+    /// Set distances of obstacles and which of them are touched at t = 0 in
+    /// @p contact. Throws ExcMessage if the body is beyond one.
     template <int dim>
     void
     touch_obstacles(const AdmissibleSpace<dim> &space,
@@ -123,8 +123,8 @@ namespace Viscoplastic
             deepest           = std::max(deepest, -contact.bound[p]);
           }
       deepest = Utilities::MPI::max(deepest, space.communicator);
-      // Between curved bodies the gap has an error, of a part of that of
-      // chords.
+      // Between curved bodies the gap has an error that is a part of the
+      // distance of surfaces from chords.
       double chords = 0.;
       for (const auto &[id, rows] : space.mortar_rows)
         for (const auto &[node, row] : rows)
@@ -198,7 +198,7 @@ namespace Viscoplastic
     double size = residual.l2_norm(), largest = 0.;
     if (space.scene.initial_stress || space.scene.has_initial_thermal_stress())
       {
-        // More points than elsewhere: what remains is quadrature error.
+        // More points than elsewhere keep the quadrature error small.
         DistributedVector internal = work_of_initial_stress(space, 4);
         largest                    = internal.l2_norm();
         space.restrict_to_unknowns(internal);
@@ -232,8 +232,7 @@ namespace Viscoplastic
           }
         face->restriction().add(-1., force, residual);
       }
-    // Where reactions balance the initial stress, nothing but rounding is left
-    // of it.
+    // Where reactions balance the initial stress, `size` is rounding only.
     CompatibilityViolation<dim> result;
     if (size > 1e-12 * largest)
       result.relative = residual.l2_norm() / size;

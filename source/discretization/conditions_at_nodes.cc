@@ -5,8 +5,8 @@ namespace Viscoplastic
 {
   namespace
   {
-    /// Call act(cell, boundary id, number of the node) for owned nodes of faces
-    /// at the boundary, but those that hang.
+    /// Call act(cell, boundary id, number of the node) for owned nodes of
+    /// boundary faces, except hanging nodes.
     template <int dim, typename Action>
     void
     for_each_boundary_node(const DoFHandler<dim>           &dof_handler,
@@ -69,8 +69,8 @@ namespace Viscoplastic
                 ExcMessage("At most 52 boundary ids and supports may carry "
                            "displacement or contact conditions."));
 
-    // What holds an absent material does not hold the nodes that it shares with
-    // the body.
+    // Conditions of an absent material do not hold the nodes that it shares
+    // with the body.
     const std::vector<bool> is_of_body = scene.has_stages() ?
                                            nodes_of_body(dof_handler, scene) :
                                            std::vector<bool>();
@@ -130,7 +130,7 @@ namespace Viscoplastic
         if (!support.position)
           here = boundaries_of_nodes(
             {support.boundaries.begin(), support.boundaries.end()});
-        // Vertices of the coarse mesh are the same numbers on all meshes.
+        // Positions of coarse vertices are bit for bit the same on all meshes.
         for (std::size_t n = 0; n < mask.size(); ++n)
           if (support.position ? node_position[n] == *support.position :
                                  here[n] == all)

@@ -8,7 +8,7 @@ namespace Viscoplastic
 {
   namespace
   {
-    /// What a node depends on, itself unless it hangs, with weights.
+    /// The nodes with weights that a node depends on: itself unless it hangs.
     std::vector<std::pair<types::global_dof_index, double>>
     independent_nodes(const AffineConstraints<double> &hanging,
                       const types::global_dof_index    dof)
@@ -77,8 +77,8 @@ namespace Viscoplastic
       if (const auto &frame = space.frame(node.frame);
           !frame.planes.empty() || !frame.obstacles.empty())
         in_contact.push_back(node);
-    // By position: the order of sweeps must not depend on how the mesh has come
-    // about.
+    // Sorting by position makes the order of Gauss-Seidel sweeps independent of
+    // the numbering of the mesh.
     std::sort(in_contact.begin(),
               in_contact.end(),
               [](const auto &a, const auto &b) {
@@ -96,7 +96,7 @@ namespace Viscoplastic
       {
         const NodalFrame<dim> &frame = space.frame(frame_index);
         Node                   node{first_dof, position, frame.directions, {}};
-        // Face components: those that some point sees.
+        // Face components are those on which the slip at some point depends.
         std::array<unsigned int, dim> position_of;
         unsigned int                  n = 0;
         for (unsigned int d = 0; d < dim; ++d)
@@ -152,8 +152,8 @@ namespace Viscoplastic
   void
   ContactFace<dim>::make_shares()
   {
-    // The number of each node's first point over all ranks, for those that see
-    // the node; its points are those of its frame.
+    // Tell ranks that see a node the number of its first point over all ranks;
+    // further points follow in the order of the node's frame.
     const ContactLayout &face = layout();
     const IndexSet own_points = Utilities::MPI::create_ascending_partitioning(
       space.communicator,
@@ -209,7 +209,7 @@ namespace Viscoplastic
                       continue; // not a vertex of the face
                     const auto add = [&](const types::global_dof_index dof,
                                          const double                  weight) {
-                      // None where other conditions hold the node.
+                      // The frame of a node that is held has no points.
                       const NodalFrame<dim> &frame  = space.frame_at(dof);
                       const auto             add_to = [&](const unsigned int p,
                                               const bool         of_obstacle,
@@ -272,7 +272,7 @@ namespace Viscoplastic
   void
   ContactFace<dim>::make_compliance()
   {
-    // int c phi_c: the penetration is that of the node, as the gap is.
+    // k_c = int c phi_c, since penetration and gap are those of the node.
     for (const auto &pair : space.scene.boundary)
       {
         const BoundaryCondition<dim> &condition = pair.second;
@@ -407,9 +407,9 @@ namespace Viscoplastic
         Tensor<1, 3> on_face;
         for (unsigned int i = 0; i < face.n_node_dofs(n); ++i)
           on_face[i] = step[node.components[i]];
-        // The slip is what is left of the tangential displacement P x where
-        // other conditions hold a part of x: map^T map = P^T P, and of a w that
-        // is tangential itself (map map^T)^{-1} map w.
+        // With map^T map = P^T P for the tangential displacement P x of the
+        // free components x, the slip of a step w that is tangential itself is
+        // (map map^T)^{-1} map w.
         result[p] = nearest_multiplier(face.points[p], on_face);
       }
     return result;

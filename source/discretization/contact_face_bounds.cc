@@ -22,7 +22,7 @@ namespace Viscoplastic
     const Point<dim> &opposite = coupling.opposite;
     const double      distance =
       (opposite - node.position) * normal + coupling.bulge;
-    // Bodies that touch do so but for rounding of coordinates.
+    // Rounding of coordinates is no distance between bodies that touch.
     return std::abs(distance) >
                1e-12 * (opposite.norm() + node.position.norm()) ?
              distance :
@@ -45,9 +45,9 @@ namespace Viscoplastic
       },
       /* of_obstacles = */ false,
       &slip_rates);
-    // Values at the nodes: means over the basis functions would not be those of
-    // the interpolant where these are not symmetric, and linear displacements
-    // not exact.
+    // Gaps are values at the nodes. Where basis functions are not symmetric,
+    // means over them would differ from linear gaps at the nodes, so that
+    // linear displacements would not be exact.
     if (any_obstacles)
       for (unsigned int p = 0; p < result.size(); ++p)
         if (layout().points[p].is_obstacle)
@@ -155,8 +155,8 @@ namespace Viscoplastic
   {
     if (!any_obstacles || !numbers)
       return false;
-    // What is left of the gap, interpolated, and what the gap is less than its
-    // interpolant.
+    // The remaining gap between nodes is the gap at the sample minus the
+    // interpolated normal displacement, `gaps` - `left`.
     LinearAlgebra::distributed::Vector<double> gaps(numbers), left(numbers);
     const std::vector<double>                  gap_at_nodes = bounds(t),
                               left_at_nodes                 = step_bounds(t, u);
@@ -193,7 +193,7 @@ namespace Viscoplastic
   {
     if (!any_computed_pressure)
       return;
-    // Piece by piece: each presses at the node by itself.
+    // Each boundary's friction follows the pressure of its own obstacle.
     const ContactLayout &face = layout();
     for (const auto &pair : space.scene.boundary)
       {
@@ -213,7 +213,7 @@ namespace Viscoplastic
           continue;
         for (unsigned int p = 0; p < bounds.size(); ++p)
           if (coefficients[p] > 0.)
-            // None where other conditions hold the node along the normal.
+            // There is no obstacle where other conditions hold the normal.
             for (unsigned int o = face.first_obstacle(face.points[p].node);
                  o < face.first_point[face.points[p].node + 1];
                  ++o)
@@ -233,8 +233,8 @@ namespace Viscoplastic
     const double               t,
     const std::vector<double> &slip_rates) const
   {
-    // Bounds are linear in the pressures: those of one obstacle a node, which
-    // presses by a unit, in turn.
+    // Bounds are linear in the pressures, so their coefficients are the bounds
+    // for a unit force at one obstacle per node at a time.
     const ContactLayout             &face = layout();
     std::vector<std::vector<double>> result(face.points.size());
     unsigned int                     n_obstacles = 0;

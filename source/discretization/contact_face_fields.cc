@@ -5,8 +5,7 @@
 #include <viscoplastic_contact/base/types.h>
 #include <viscoplastic_contact/discretization/contact_face.h>
 
-// What displacements and multipliers are at the points of the face, and as
-// fields.
+// Displacements and multipliers at the points of the face and as nodal fields.
 
 namespace Viscoplastic
 {
@@ -107,7 +106,7 @@ namespace Viscoplastic
         if (point_weights[p] == 0. ||
             (of_friction_alone && face.points[p].is_obstacle))
           continue;
-        // Points along the same normal share their area.
+        // Points of the same normal at a node share the sum of their areas.
         double      area  = point_weights[p];
         const auto &point = face.points[p];
         for (unsigned int o = face.first_point[point.node];
@@ -120,8 +119,8 @@ namespace Viscoplastic
               (other.map[1] - point.map[1]).norm() < 1e-10)
             area += point_weights[o];
         Tensor<1, dim> traction = cartesian(p, state.multiplier[p]) / area;
-        // A pressure is along the normal, also where other conditions hold a
-        // part of it and carry that.
+        // A pressure acts along the whole normal, also in components that other
+        // conditions hold, which cartesian() leaves out.
         if (face.points[p].is_obstacle)
           {
             const unsigned int     n     = face.points[p].node;
@@ -181,7 +180,7 @@ namespace Viscoplastic
         result[p] = slip(face.points[p], on_face) * point_weights[p];
         if (face.points[p].is_obstacle)
           {
-            // Across an oblique obstacle, rounding of friction is no pressure.
+            // At an oblique obstacle, rounding of friction is no pressure.
             const Tensor<1, 3> &normal = face.points[p].map[0];
             if (std::abs(normal * on_face) <=
                 1e-12 * normal.norm() * on_face.norm())

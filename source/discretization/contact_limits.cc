@@ -18,7 +18,7 @@ namespace Viscoplastic
             {
               const auto &condition =
                 space.scene.boundary.at(cell->face(f)->boundary_id());
-              // Glue is meant to pull.
+              // Glued contact is meant to carry tension.
               if (condition.role != BoundaryRole::contact ||
                   !condition.is_bilateral() || condition.is_glued() ||
                   !space.scene.is_present(cell->material_id()))
@@ -61,7 +61,7 @@ namespace Viscoplastic
           for (unsigned int j = 0; j < dim; ++j)
             value += stress[i][j] * face.normal[i] * face.normal[j];
         normal_stress.push_back(value);
-        // Of the whole stress: in pure shear the normal stress is rounding.
+        // The whole stress counts: in pure shear the normal stress is rounding.
         largest = std::max(largest, stress.norm());
       }
     const MPI_Comm comm = stress_space.space.communicator;

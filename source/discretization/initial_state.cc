@@ -32,7 +32,7 @@ namespace Viscoplastic
 
   namespace
   {
-    /// That of alpha (T - T_0) at t = 0.
+    /// The thermal stress -E alpha (T - T_0) I at t = 0.
     template <int dim>
     SymmetricTensor<2, 3>
     initial_thermal_stress(const Scene<dim>        &scene,
@@ -124,7 +124,7 @@ namespace Viscoplastic
 
 
 
-    /// u0 at the nodes, in frames: compared with what is prescribed there.
+    /// u0 at the nodes, in frames, to compare with prescribed values.
     template <int dim>
     DistributedVector
     interpolate_initial_displacement(const AdmissibleSpace<dim> &space)
@@ -270,7 +270,7 @@ namespace Viscoplastic
                        });
         if (scene.has_springs())
           {
-            // In the form with springs, which may be all that holds the body.
+            // Add springs to the form, as they may be all that holds the body.
             const Springs<dim> springs(space);
             double             unit = 0.;
             for (std::size_t c = 0; c < stress_space.n_cells(); ++c)
@@ -312,7 +312,7 @@ namespace Viscoplastic
         space.dof_handler.get_triangulation().n_active_cells());
     if (!scene.initial_displacement && !scene.initial_stress)
       return 0.;
-    // Temperatures are taken as they are.
+    // The thermal stress counts as exact and is left out.
     IrreversibleStress        rest;
     const auto                thermal = scene.has_initial_thermal_stress() ?
                                           std::make_unique<ThermalStrain<dim>>(stress_space) :

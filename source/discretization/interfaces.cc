@@ -4,8 +4,8 @@
 
 #include <map>
 
-// What the space of two bodies adds to that of one: jumps across their
-// interface in place of displacements.
+// The part of AdmissibleSpace for interfaces between bodies, where unknowns are
+// jumps instead of displacements.
 
 namespace Viscoplastic
 {
@@ -25,7 +25,7 @@ namespace Viscoplastic
           for (unsigned int i = 0; i < frame.n_fixed; ++i)
             if (frame.condition_boundary[i] != id)
               {
-                // What the conditions before have left of it.
+                // Project out the part that earlier conditions have left.
                 const Tensor<1, dim> e =
                   coupling.projector * frame.condition_direction[i];
                 coupling.projector -= outer_product(e, e) / e.norm_square();
@@ -35,7 +35,7 @@ namespace Viscoplastic
             coupling.others.emplace_back(relevant.index_within_set(other.node *
                                                                    dim),
                                          other.weight);
-          // See Scene::inspect_contact_pairs().
+          // Scene::inspect_contact_pairs() ensures one coupling a node.
           Assert(coupling_of.count(coupling.node) == 0, ExcInternalError());
           coupling_of[coupling.node] = couplings.size();
           couplings.push_back(coupling);
@@ -113,8 +113,8 @@ namespace Viscoplastic
   AdmissibleSpace<dim>::couple(std::vector<types::global_dof_index> &dofs,
                                FullMatrix<double> &cell_matrix) const
   {
-    // The rows of T = I + C Q: blocks of nodes opposite, which become further
-    // degrees of freedom.
+    // The rows of T = I + C Q beyond I: blocks of nodes opposite, which become
+    // further degrees of freedom.
     struct Entry
     {
       unsigned int   row;

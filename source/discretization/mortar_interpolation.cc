@@ -16,12 +16,12 @@ namespace Viscoplastic
     using Node = NodeHierarchy::Node;
     using Row  = std::vector<NodeHierarchy::Parent>;
 
-    /// A part of a face that is not covered from the other side, or rounding;
-    /// where sides are curved, they are not seen exactly from each other.
+    /// The part of a face that need not be covered from the other side, for
+    /// rounding; more where sides are curved, whose projections are not exact.
     constexpr double coverage_tolerance = 1e-6, curved_tolerance = 0.05;
 
-    /// MortarRow::bulge among the entries of a row, for the way over ranks and
-    /// hanging nodes.
+    /// The node number of the entry with MortarRow::bulge in a row, which ranks
+    /// and hanging nodes pass on like other entries.
     constexpr Node bulge_entry = numbers::invalid_dof_index;
 
 
@@ -151,7 +151,7 @@ namespace Viscoplastic
         return result;
       }
 
-      /// A quadrature point of what two faces have in common.
+      /// A quadrature point in the intersection of two faces.
       struct Sample
       {
         const PrimaryFace<dim> *other;
@@ -159,7 +159,7 @@ namespace Viscoplastic
         double                  JxW, bulge;
       };
 
-      /// The measure of what they have in common.
+      /// Add samples in the intersection of two faces; returns its measure.
       double
       add_samples(const SurfaceFace<dim> &here,
                   const Tensor<1, dim>   &normal,
@@ -205,7 +205,7 @@ namespace Viscoplastic
         return result;
       }
 
-      /// Over owned faces, for nodes of any rank. Collective.
+      /// Integrate over owned faces, for nodes of any rank. Collective.
       std::map<Node, Integrals>
       integrate() const
       {
@@ -237,7 +237,7 @@ namespace Viscoplastic
                                               coverage_tolerance) *
                                              area)
               {
-                // Its part of the sums of rows is missing.
+                // Rows that lack products do not sum to 1 and are dropped.
                 for (Integrals *const of_node : at)
                   of_node->weight += area / n;
                 return;
@@ -279,13 +279,13 @@ namespace Viscoplastic
         return result;
       }
 
-      /// The rows of independent nodes with the part that hanging nodes leave
-      /// them. Collective.
+      /// Add the contributions of hanging nodes to the rows of independent
+      /// nodes, see mortar_interpolation(). Collective.
       void
       pass_on_hanging_nodes(const std::map<Node, Integrals> &integrals,
                             std::map<Node, Row>             &rows) const
       {
-        // Edges with a hanging node: all at owned nodes are known here.
+        // Edges by hanging node; all that end at owned nodes are known here.
         std::map<Node, std::pair<Node, Node>> edges;
         for_each_face(
           pair.secondary, 1., [&](const auto &cell, const unsigned int f) {
@@ -300,7 +300,7 @@ namespace Viscoplastic
         if (Utilities::MPI::max(edges.size(), communicator) == 0)
           return;
 
-        // Integrals of basis functions, and rows, also of other ranks' nodes.
+        // Rows of nodes of any rank, preceded by the nodes' integrals of phi.
         const auto with_weights = [&](const std::map<Node, double> &weights,
                                       const std::set<Node>         &nodes) {
           std::map<Node, Row>     result;

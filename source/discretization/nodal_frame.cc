@@ -53,7 +53,7 @@ namespace Viscoplastic
 
 
 
-    /// Whether no condition fixes a component of a frame.
+    /// Whether components of a frame are free: no condition fixes them.
     template <int dim>
     std::array<bool, dim>
     free_directions(const NodalFrame<dim> &frame)
@@ -80,8 +80,8 @@ namespace Viscoplastic
       if (!a.foundation_motion || !b.foundation_motion ||
           !a.foundation_motion->is_written_as(*b.foundation_motion))
         return false;
-      // The same motion along pieces at an angle is the same slip if each piece
-      // leaves as much of each free direction.
+      // The same motion of pieces at an angle is the same slip if free
+      // directions have the same tangential part on both.
       const auto is_free = free_directions(frame);
       for (unsigned int i = 0; i < dim; ++i)
         if (const auto e = column(frame.directions, i);
@@ -167,7 +167,7 @@ namespace Viscoplastic
 
 
 
-    /// The normal of a piece at a node where that of curved ones is @p varying.
+    /// The normal of a piece at a node: @p varying for curved pieces.
     template <int dim>
     const Tensor<1, dim> &
     normal_of(const BoundaryCondition<dim> &condition,
@@ -178,8 +178,8 @@ namespace Viscoplastic
 
 
 
-    /// The directions that conditions fix, as those of @p frame and the first
-    /// ones of the @p basis. Where conditions compete, what fixes more comes
+    /// Set the directions that conditions fix, in @p frame and as the first
+    /// ones of @p basis. Where conditions compete, those that fix more come
     /// first.
     template <int dim>
     void
@@ -228,7 +228,7 @@ namespace Viscoplastic
                     numbers::invalid_unsigned_int);
       require_axes([](const auto &c) { return c.id >= first_support_id; },
                    prescribed);
-      // What else holds a node holds it against the ground.
+      // Glue to another body only fixes what no other condition fixes.
       require_axes([](const auto &c) { return c.is_glued() && c.against; },
                    all_axes);
     }

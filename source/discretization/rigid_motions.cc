@@ -12,8 +12,8 @@
 #include <set>
 #include <sstream>
 
-// The rigid motions of a body: those that its conditions have to prevent, and
-// the near null space that they are for some solvers.
+// The rigid motions of a body: the check that its conditions prevent them, and
+// the near null space that they make for some solvers.
 
 namespace Viscoplastic
 {
@@ -23,8 +23,8 @@ namespace Viscoplastic
 
 
 
-    /// The parts of the present body, joined by faces. Without stages and
-    /// contact between bodies it is one.
+    /// The connected parts (by faces) of the present body. Without stages and
+    /// contact between bodies there is one.
     struct BodyParts
     {
       unsigned int n = 1;
@@ -140,8 +140,8 @@ namespace Viscoplastic
 
 
 
-    /// Whether friction or an obstacle of a frame sees motions along one of its
-    /// directions.
+    /// Whether friction or an obstacle at a node resists motions along a
+    /// direction of its frame.
     template <int dim>
     bool
     contact_sees(const Scene<dim>      &scene,
@@ -165,12 +165,12 @@ namespace Viscoplastic
 
 
 
-    /// What the displacement of a place along a direction sees of the rigid
-    /// motions of the parts of a body.
+    /// Rows for SeenMotions: the displacements of a place along a direction in
+    /// the rigid motions of the parts of a body.
     template <int dim>
     struct MotionsOfPlace
     {
-      /// Whether parts that see each other are looked at together.
+      /// Whether contact couples parts, whose motions share rows then.
       const bool       are_coupled;
       const Point<dim> center;
       const double     radius;
@@ -191,7 +191,7 @@ namespace Viscoplastic
 
 
 
-    /// A ring resists all of its plane motions but that along its axis.
+    /// A body of revolution resists all plane motions but that along its axis.
     void
     resist_as_ring(SeenMotions &seen, const unsigned int n_motions)
     {
@@ -206,7 +206,7 @@ namespace Viscoplastic
 
 
 
-    /// The sentence that refuses a scene which leaves @p motions free.
+    /// The error message for a scene that leaves @p motions free.
     template <int dim>
     std::string
     refusal(const Scene<dim>  &scene,
@@ -278,7 +278,7 @@ namespace Viscoplastic
       radius = std::max(radius, x.distance(center));
     radius = Utilities::MPI::max(radius, communicator);
     const MotionsOfPlace<dim> motions_of{are_coupled, center, radius};
-    // Of a boundary node, relative to the body opposite if there is one.
+    // A boundary node moves relative to the body opposite if there is one.
     const auto add_row_of_node = [&](SeenMotions          &to,
                                      const unsigned int    part,
                                      const BoundaryNode   &node,

@@ -106,7 +106,7 @@ namespace Viscoplastic
     std::string result;
     for (const RigidMotion &motion : motions)
       {
-        // Name it by its largest part.
+        // The largest component gives the motion its name.
         unsigned int largest = 0;
         for (unsigned int a = 1; a < n; ++a)
           if (std::abs(motion[a]) > std::abs(motion[largest]) + 1e-8)

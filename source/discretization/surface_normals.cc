@@ -57,7 +57,7 @@ namespace Viscoplastic
 
 
 
-    /// Of unit length; exact axes keep nodal frames trivial.
+    /// Scale to unit length; exact axes keep nodal frames trivial.
     template <int dim>
     Tensor<1, dim>
     normalized(Tensor<1, dim> normal)
@@ -123,7 +123,7 @@ namespace Viscoplastic
         }
     const IndexSet &owned = dof_handler.locally_owned_dofs();
     std::map<types::global_dof_index, Point<dim>> positions;
-    // Of each owned node an orthonormal basis of the normals of symmetry there.
+    // An orthonormal basis of the symmetry planes' normals at each owned node.
     std::map<types::global_dof_index, std::vector<Tensor<1, dim>>> mirrors;
     using Cell = typename DoFHandler<dim>::active_cell_iterator;
     std::vector<std::pair<Cell, unsigned int>> faces;
@@ -156,7 +156,7 @@ namespace Viscoplastic
     const bool any_hanging =
       Utilities::MPI::max(hanging_nodes.n_constraints(),
                           dof_handler.get_communicator());
-    // Normals need lifted nodes, which need normals.
+    // Normals and lifted nodes depend on each other, so they are iterated.
     for (unsigned int pass = 0; pass < (any_hanging ? 3 : 1); ++pass)
       {
         LinearAlgebra::distributed::Vector<double> sums(normals);
@@ -229,7 +229,7 @@ namespace Viscoplastic
       curvature = std::max(curvature,
                            (face.normals[v] - face.normals[0]).norm() /
                              (face.vertices[v] - face.vertices[0]).norm());
-    // A face that is flat by itself looks as far as coordinates go.
+    // The reach of a flat face is as large as numbers allow.
     return 0.5 / std::max(curvature, std::numeric_limits<double>::min());
   }
 

@@ -7,8 +7,8 @@ namespace Viscoplastic
 {
   namespace
   {
-    /// The step size up to rounding of the times it is a difference of, so that
-    /// the steps of a phase have the same matrix.
+    /// Round a step size, a difference of times, to 34 bits, so that all steps
+    /// of a phase have the same matrix.
     double
     without_rounding(const double k)
     {
@@ -19,7 +19,7 @@ namespace Viscoplastic
 
 
 
-    /// The trace of the product of two tensors, as a map.
+    /// The trace of the product of two tensors, as linear maps of strains.
     double
     trace(const SymmetricTensor<4, 3> &a, const SymmetricTensor<4, 3> &b)
     {
@@ -33,7 +33,7 @@ namespace Viscoplastic
 
 
 
-    /// Poisson's ratio of the isotropic tensor next to this one.
+    /// Poisson's ratio of the isotropic tensor nearest to this one.
     double
     poissons_ratio(const SymmetricTensor<4, 3> &tangent)
     {
@@ -77,8 +77,8 @@ namespace Viscoplastic
     const unsigned int                 n            = stress_space.n_samples;
     std::vector<SymmetricTensor<2, 3>> strain(n);
     const MPI_Comm                     comm = stress_space.space.communicator;
-    // Never the same before the first time, also on ranks without cells; nor
-    // after this if it does not come to its end.
+    // Tangents count as new at the first call, also on ranks without cells, and
+    // after a call that has thrown.
     const double old_max_nu = max_nu;
     bool         is_same    = max_nu > -1.;
     max_nu                  = -1.;
@@ -88,7 +88,7 @@ namespace Viscoplastic
     double                largest = 1., largest_nu = -1.;
     const Stiffness      *last = nullptr;
     SymmetricTensor<4, 3> E, E_inverse;
-    // A law without derivatives at a sample fails the step.
+    // A law without derivatives at a sample throws, on all ranks together.
     fail_together(comm, [&] {
       for (std::size_t c = 0; c < stress_space.n_cells(); ++c)
         {
@@ -121,8 +121,8 @@ namespace Viscoplastic
                 continue;
               if (!law)
                 compliances[i] = E_inverse;
-              // The largest eigenvalue of C^-1 E: with a potential, all others
-              // are at least 1.
+              // The trace of C^-1 E minus 5 bounds its largest eigenvalue: with
+              // a potential, the other five are at least 1.
               largest = std::max(largest, trace(compliances[i], E) - 5.);
             }
         }

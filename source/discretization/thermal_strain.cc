@@ -21,7 +21,7 @@ namespace Viscoplastic
 
 
 
-    /// z beside that of the temperature.
+    /// Whether z has parts other than the thermal stress.
     template <int dim>
     bool
     has_other_stress(const Scene<dim> &scene)
@@ -68,7 +68,7 @@ namespace Viscoplastic
         expansion.push_back(
           space.scene.material(cell->material_id()).expansion(cell->center()));
     });
-    // Where T_0 is that of each place it has to be known first.
+    // Without a given T_0, it is the temperature at t = 0 at each sample.
     const auto &given = space.scene.temperature->reference;
     reference =
       given ?
@@ -161,7 +161,7 @@ namespace Viscoplastic
                              const double        t,
                              IrreversibleStress &z) const
   {
-    // z stays bit for bit where nothing changes.
+    // Leave z as it is, bit for bit, where nothing changes.
     if (!expands || !varies_in_time || t == t_old)
       return;
     const auto         before = at(t_old), now = at(t);
@@ -185,7 +185,7 @@ namespace Viscoplastic
     if (thermal == nullptr || !thermal->expands)
       return z;
     if (thermal->is_alone)
-      return rest; // without what rounding leaves of z
+      return rest; // not z minus z with its rounding
     rest = z;
     thermal->add_stress(t, -1., rest);
     return rest;

@@ -9,7 +9,7 @@ namespace Viscoplastic
 {
   namespace
   {
-    /// A cycle is as good as a new one while fewer masks have changed.
+    /// The part of the masks that may change before a cycle is rebuilt.
     constexpr double outdated_part = 0.1;
   } // namespace
 
@@ -74,8 +74,7 @@ namespace Viscoplastic
     cycle.aggregation.reset();
     cycle.built_for = masks;
 
-    // The masks of owned nodes, and of those of other ranks that they couple
-    // with.
+    // Projectors are needed at ghost nodes, too, with which owned rows couple.
     const unsigned int n_owned = rows.n_rows();
     const auto        &where   = level.x.get_partitioner();
     const unsigned int n_nodes =

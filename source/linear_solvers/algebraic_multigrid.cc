@@ -9,8 +9,8 @@ namespace Viscoplastic
 {
   namespace
   {
-    /// A matrix without the rows and columns that are not kept (0 instead of 1)
-    /// but for their diagonal. Collective.
+    /// Return a copy of @p matrix without the off-diagonal entries in rows and
+    /// columns where @p keep_column is 0 instead of 1. Collective.
     std::unique_ptr<TrilinosWrappers::SparseMatrix>
     masked(const DistributedMatrix   &matrix,
            const std::vector<double> &keep_column,
@@ -94,9 +94,9 @@ namespace Viscoplastic
   std::unique_ptr<SmoothedAggregation>
   AlgebraicMultigrid::make(const FaceTruncation &truncation) const
   {
-    // Components that are cut off: excluded ones, and those of the face that
-    // are blocked by themselves, such as the normal one of a node that slips on
-    // the foundation.
+    // Cut off excluded components and face components that are blocked by
+    // themselves, such as the normal component of a node that slips on the
+    // foundation.
     std::vector<double> keep(excluded.size());
     for (std::size_t i = 0; i < excluded.size(); ++i)
       keep[i] = excluded[i] ? 0. : 1.;
@@ -106,7 +106,7 @@ namespace Viscoplastic
           keep[restriction.positions()[face.first_dof[n] + i]] = 0.;
     auto masked_matrix = masked(matrix, matrix.at_columns(keep.data()), dim);
 
-    // The springs of slipping points, which the cut-off rows do not have.
+    // Add the springs of slipping points; rows that are cut off have none.
     if (truncation.has_springs(face))
       {
         const std::vector<types::global_dof_index> &dofs = restriction.dofs();
@@ -139,7 +139,7 @@ namespace Viscoplastic
   void
   AlgebraicMultigrid::build()
   {
-    amg.reset(); // before there is another one: memory
+    amg.reset(); // free its memory before the next one is built
     amg             = make(truncation);
     built_for       = truncation;
     is_fresh        = true;
@@ -234,7 +234,7 @@ namespace Viscoplastic
   unsigned int
   AlgebraicMultigrid::price() const
   {
-    // A set-up takes 1.2 (2D) to 2.2 (3D) solves of about 15.
+    // A set-up costs 1.2 (2D) to 2.2 (3D) solves of about 15 iterations.
     return dim == 2 ? 20 : 30;
   }
 

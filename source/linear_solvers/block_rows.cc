@@ -14,8 +14,8 @@ namespace Viscoplastic
 
 
 
-    /// Consecutive numbers for nodes: the owned ones first, others as they
-    /// come.
+    /// Consecutive local numbers for nodes: owned nodes first, then others in
+    /// the order in which their numbers are asked for.
     class LocalNumbers
     {
     public:
@@ -42,7 +42,7 @@ namespace Viscoplastic
         return entry->second;
       }
 
-      /// Numbers to nodes.
+      /// The node of each local number.
       const std::vector<Node> &
       all() const
       {
@@ -75,7 +75,7 @@ namespace Viscoplastic
 
 
 
-    /// Add what other ranks have to rows. Collective.
+    /// Return @p rows plus the blocks that other ranks send. Collective.
     template <int dim>
     BlockRows<dim>
     exchange(const BlockRows<dim>                                  &rows,
@@ -84,7 +84,7 @@ namespace Viscoplastic
              const MPI_Comm communicator)
     {
       std::map<unsigned int, std::map<Node, NodeBlock<dim>>> sums;
-      // In the order of the ranks: sums do not depend on who is first.
+      // Adding in the order of the ranks makes sums reproducible.
       for (const auto &from :
            Utilities::MPI::some_to_some(communicator, to_send))
         for (const Entry<dim> &entry : from.second)
@@ -128,7 +128,7 @@ namespace Viscoplastic
     }
 
 
-    /// Lists of numbers, one a row.
+    /// One list of numbers per row, in compressed form.
     struct Lists
     {
       std::vector<std::size_t>  begin;
@@ -137,8 +137,8 @@ namespace Viscoplastic
 
 
 
-    /// The rows in which each column occurs, in their order, of @p n_rows rows
-    /// with these columns.
+    /// Return for each column the rows in which it occurs, in ascending order;
+    /// @p columns are those of @p n_rows compressed rows.
     Lists
     transpose(const std::vector<std::size_t>  &row_begin,
               const std::vector<unsigned int> &columns,
@@ -161,7 +161,7 @@ namespace Viscoplastic
 
 
 
-    /// Columns of A as rows of the interpolation.
+    /// Return for each entry of A the interpolation's row of its column.
     template <int dim>
     std::vector<unsigned int>
     rows_of_columns(const BlockRows<dim>    &A,
@@ -201,7 +201,7 @@ namespace Viscoplastic
     const unsigned int rank  = Utilities::MPI::this_mpi_process(communicator);
     const Node         begin = begins[rank], end = begins[rank + 1];
 
-    // Columns of P by consecutive coarse numbers.
+    // Number the columns of P, which are coarse nodes, consecutively.
     LocalNumbers              number(coarse_nodes, begin, end);
     std::vector<unsigned int> parents(P.parents.size());
     for (std::size_t e = 0; e < parents.size(); ++e)
@@ -211,7 +211,7 @@ namespace Viscoplastic
       transpose(P.begin, parents, A.n_rows(), coarse.size());
     const std::vector<unsigned int> fine_column =
       rows_of_columns(A, owned_nodes, ghosts, begin, end);
-    // Call act(e, p) for the entries e and p that a row of A P is made of.
+    // Call act(e, p) for all pairs of entries whose products make row i of A P.
     const auto for_each_product = [&](const unsigned int i, const auto &act) {
       for (std::size_t e = A.begin[i]; e < A.begin[i + 1]; ++e)
         for (std::size_t p = P.begin[fine_column[e]];
@@ -220,7 +220,7 @@ namespace Viscoplastic
           act(e, p);
     };
 
-    // The pattern, coarse row by coarse row.
+    // Make the sparsity pattern, coarse row by coarse row.
     std::vector<std::size_t>                   row_begin(1, 0);
     std::vector<unsigned int>                  columns;
     std::vector<unsigned int>                  seen_in(coarse.size(), none);
@@ -243,7 +243,7 @@ namespace Viscoplastic
         row_begin.push_back(columns.size());
       }
 
-    // The values, fine row by fine row: T = A_i P, then P^T T.
+    // Add up the values, fine row by fine row: T = A_i P, then P_i^T T.
     std::vector<NodeBlock<dim>> values(columns.size(), NodeBlock<dim>());
     std::vector<unsigned int>   place(coarse.size(), none), touched;
     std::vector<NodeBlock<dim>> sums;

@@ -8,9 +8,9 @@ namespace Viscoplastic
 {
   namespace
   {
-    /// The direction of each column, one vector for each of its components: its
-    /// owner knows it, and hanging nodes couple rows with nodes that no cell
-    /// here has. Collective.
+    /// Return the direction of each column, one vector for each of its
+    /// components. Owners send directions, since hanging-node constraints
+    /// couple rows with nodes that no cell of this rank has. Collective.
     template <int dim>
     std::vector<std::vector<double>>
     directions_of_columns(const DistributedMatrix &matrix,

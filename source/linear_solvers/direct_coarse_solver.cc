@@ -7,13 +7,13 @@ namespace Viscoplastic
 {
   namespace
   {
-    /// What the ranks have, in the order of the ranks.
+    /// Concatenate the parts of all ranks in their order. Collective.
     template <typename T>
     std::vector<T>
     gather(const std::vector<T> &part, const MPI_Comm communicator)
     {
       if (Utilities::MPI::n_mpi_processes(communicator) == 1)
-        return part; // it would be packed and unpacked
+        return part; // all_gather() would serialize it
       std::vector<T> result;
       for (const auto &one : Utilities::MPI::all_gather(communicator, part))
         result.insert(result.end(), one.begin(), one.end());

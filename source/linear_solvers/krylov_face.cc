@@ -8,7 +8,7 @@ namespace Viscoplastic
   void
   KrylovSolver::make_face_matrix()
   {
-    // Which columns are entries of the face, on whatever rank.
+    // The global number of the face entry of each column, on any rank.
     const unsigned int  n_rows = matrix.n_rows(), dim = matrix.block_size();
     constexpr double    none = -1.;
     std::vector<double> number(n_rows * dim, none);

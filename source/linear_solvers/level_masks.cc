@@ -176,7 +176,7 @@ namespace Viscoplastic
     auto                  &fine = level.space->r, &sums = below.space->b;
     std::vector<Treatment> result(below.face.size());
 
-    // The weight of face nodes around a coarse one that sticks, and all of it.
+    // Sum the weights of sticking and of all face nodes around a coarse one.
     fine = 0.f;
     for (unsigned int f = 0; f < level.face.size(); ++f)
       {
@@ -192,8 +192,8 @@ namespace Viscoplastic
         result[f].blocked         = sticks ? 1. : 0.;
         if (!sticks)
           result[f].projector = identity<3>();
-        // On edges of the face, where only some directions stick, a node goes
-        // by itself.
+        // A coarse node of which only some directions are blocked, as on edges
+        // of the face, keeps its own projector.
         const FaceNode     &node = face_nodes[below.face[f].number];
         const Tensor<2, 3> &own  = truncation.projector[node.index];
         const double        n    = node.n_blocked(own);
@@ -204,7 +204,7 @@ namespace Viscoplastic
           }
       }
 
-    // Springs are lumped, column by column.
+    // Lump the springs, column by column.
     if (has_springs)
       for (unsigned int j = 0; j < dim; ++j)
         {

@@ -35,7 +35,7 @@ namespace Viscoplastic
     size *= std::numeric_limits<double>::epsilon();
 
     constexpr unsigned int n_samples = 4;
-    // The same signs again and again; others on each rank.
+    // The fixed seed makes results reproducible; ranks differ by it.
     std::mt19937 random(1 + load.local_range().first);
     double       mean = 0.;
     for (unsigned int sample = 0; sample < n_samples; ++sample)

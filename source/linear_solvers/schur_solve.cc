@@ -11,7 +11,7 @@
 #include <algorithm>
 #include <cmath>
 
-// A contact problem on the face, by its Schur complement.
+// Solve contact problems on the face with the Schur complement of the bulk.
 
 extern "C" void
 dsymv_(const char   *triangle,
@@ -29,13 +29,13 @@ namespace Viscoplastic
 {
   namespace
   {
-    /// Solves on faces of so many unknowns cost next to nothing.
+    /// The number of face unknowns up to which solves cost next to nothing.
     constexpr unsigned int small_face = 600;
 
 
 
-    /// y := S x. deal.II's product reads all of S, not one triangle, and waits
-    /// for each addition.
+    /// y := S x by BLAS, which reads one triangle of S. deal.II's product reads
+    /// all of S and adds up sequentially.
     void
     multiply(const FullMatrix<double> &S,
              const Vector<double>     &x,
@@ -73,7 +73,7 @@ namespace Viscoplastic
         complete(x, y);
       }
 
-      /// What S acts on.
+      /// The motion that S acts on: @p x, tilted if the truncation says so.
       Vector<double>
       motion(const Vector<double> &x) const
       {
@@ -83,7 +83,7 @@ namespace Viscoplastic
         return result;
       }
 
-      /// From y = S motion(x) to the product.
+      /// Complete y = S motion(x) to the product of this matrix with @p x.
       void
       complete(const Vector<double> &x, Vector<double> &y) const
       {
@@ -100,8 +100,8 @@ namespace Viscoplastic
 
 
 
-    /// Factors of that as a matrix, with the diagonal of S scaled to 1, and
-    /// the identity where motions are blocked.
+    /// LU factors of TruncatedFace as a dense matrix, with the diagonal of S
+    /// scaled to 1, and the identity where motions are blocked.
     struct DenseFactors
     {
       const TruncatedFace      system;
@@ -121,7 +121,7 @@ namespace Viscoplastic
             unit    = 0.;
             unit[j] = 1.;
             system.truncation.project(system.face, unit);
-            // Of one node: the product would be that of a whole vector.
+            // The motion is that of one node, so a few columns of S suffice.
             const Vector<double> motion = system.motion(unit);
             column                      = 0.;
             for (unsigned int k = 0; k < motion.size(); ++k)
@@ -148,7 +148,7 @@ namespace Viscoplastic
 
 
 
-    /// Inverse diagonal blocks of that, as a preconditioner.
+    /// A preconditioner of TruncatedFace by inverse blocks of nodes.
     struct NodalBlocks
     {
       const ContactLayout      &face;
@@ -165,8 +165,8 @@ namespace Viscoplastic
 
 
 
-  /// A solve under way, after the forward substitution: the bulk follows the
-  /// face.
+  /// A contact solve after the forward substitution, in which the bulk is
+  /// always in equilibrium with the face.
   class SchurSolver::Solve : public ContactSolve
   {
   public:
@@ -293,8 +293,8 @@ namespace Viscoplastic
     }
 
   private:
-    /// What this has added to the displacement from which it began, times L^T:
-    /// (y_i, L_cc^T face_change).
+    /// L^T times the change of the displacement since the solve began: (y_i,
+    /// L_cc^T face_change).
     Vector<double>
     change() const
     {
@@ -311,10 +311,10 @@ namespace Viscoplastic
     Vector<double>           y, face_load, face_change, correction, product;
     FaceTruncation           truncation;
     double                   squared_norm; // of the start
-    /// The residual of face_change, for which each iteration asks thrice.
+    /// The residual at face_change, cached for three uses an iteration.
     mutable Vector<double> residual;
     mutable bool           residual_is_known = false;
-    /// L^{-1} load, once it has been asked for.
+    /// L^{-1} load; empty until it is needed.
     mutable Vector<double> forward_load;
   };
 
@@ -323,12 +323,12 @@ namespace Viscoplastic
   double
   SchurSolver::Solve::energy_norm() const
   {
-    // Begun at g, u = g + L^{-T} v.
+    // The solve began at g, so that u = g + L^{-T} v.
     const Vector<double> v   = change();
     double               sum = squared_norm + v.norm_sqr();
-    // Prescribed values that jump begin with a large energy in the cells beside
-    // them, which v takes back. Otherwise one of the two is much smaller, and
-    // the product of both, which takes another solve, does not count.
+    // The mixed term takes another solve and is left out where g or v is small,
+    // which changes the norm by some 10 % at most. Both are large where
+    // prescribed values jump: cells beside them begin with a large energy.
     constexpr double apart = 1e-2;
     if (std::min(squared_norm, v.norm_sqr()) >
         apart * std::max(squared_norm, v.norm_sqr()))
@@ -338,7 +338,7 @@ namespace Viscoplastic
           forward_load = solver.forward(load);
         sum += 2. * (v * forward_load - v * y);
       }
-    // Of a translation it is rounding, of either sign.
+    // The energy of a translation is rounding, of either sign.
     return std::sqrt(std::max(0., sum));
   }
 
@@ -361,8 +361,8 @@ namespace Viscoplastic
     NodalBlocks blocks{face, std::vector<Tensor<2, 3>>(face.n_nodes())};
     for (unsigned int n = 0; n < face.n_nodes(); ++n)
       {
-        // Blocked directions get a multiple of the identity, which keeps the
-        // block regular, of the size of the others.
+        // Blocked directions get a multiple of the identity of the size of the
+        // stiffness, which keeps the block regular.
         const Tensor<2, 3> &P = truncation.projector[n];
         const Tensor<2, 3>  stiffness =
           solver.schur_complement->diagonal_block(n);
@@ -373,8 +373,8 @@ namespace Viscoplastic
             block[d][e] += one * ((d == e ? 1. : 0.) - P[d][e]);
         blocks.inverse[n] = P * invert(block) * P;
       }
-    // A small face problem costs nothing: solve it to the end, and the active
-    // set iteration is finite in 2D. In a large one, follow the caller.
+    // Solve a small face problem to rounding, so that the active set iteration
+    // is finite in 2D, and a large one to the tolerance of the caller.
     const bool   is_small = face.n_dofs() <= small_face;
     const double reduction =
       is_small ? 1e-13 : std::max(1e-13, 0.01 * tolerance);
@@ -397,8 +397,8 @@ namespace Viscoplastic
       }
     catch (const SolverControl::NoConvergence &)
       {
-        // Rounding stopped it; the line search and the error bound judge what
-        // comes out.
+        // Rounding stopped the iteration. A small system is factorized; the
+        // line search and the error bound judge the result.
         if (is_small)
           DenseFactors(system).solve(w = product);
       }

@@ -47,8 +47,8 @@ namespace Viscoplastic
                              "; use the multigrid solver."));
     }
 
-    /// The upper triangle by columns (= the lower one by rows) of the leading n
-    /// unknowns in their present order.
+    /// Return the upper triangle by columns (= the lower one by rows) of the
+    /// matrix of the first @p n of @p unknowns.
     cholmod_sparse *
     to_cholmod(const DistributedMatrix         &matrix,
                const std::vector<unsigned int> &unknowns,

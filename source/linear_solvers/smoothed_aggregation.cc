@@ -22,8 +22,8 @@ namespace Viscoplastic
     , near_null_space(std::move(near_null_space_))
     , amg(std::make_unique<TrilinosWrappers::PreconditionAMG>())
   {
-    // ML shifts the diagonal of the coarsest matrix by 1e-12, whatever the unit
-    // of stress is. A power of two changes no digit.
+    // ML shifts the diagonal of the coarsest matrix by 1e-12, so very small or
+    // large units of stress are scaled, by a power of two, which is exact.
     const MPI_Comm communicator = matrix->get_mpi_communicator();
     double         largest      = 0.;
     for (const auto row : matrix->locally_owned_range_indices())
@@ -34,7 +34,7 @@ namespace Viscoplastic
     if (unit != 1.)
       *matrix /= unit;
     if (near_null_space.empty())
-      near_null_space.resize(1); // never null
+      near_null_space.resize(1); // data() must not be null
 
     Teuchos::ParameterList parameters;
     ML_Epetra::SetDefaults("SA", parameters);
@@ -50,8 +50,8 @@ namespace Viscoplastic
     parameters.set("null space: type", "pre-computed");
     parameters.set("null space: dimension", dim == 2 ? 3 : 6);
     parameters.set("null space: vectors", near_null_space.data());
-    // The vectors from which ML estimates eigenvalues are random: always the
-    // same ones, or a set-up would depend on how many there were before.
+    // ML estimates eigenvalues from random vectors. With a fixed seed, a set-up
+    // does not depend on how many set-ups preceded it.
     ML_set_random_seed(
       1 + static_cast<int>(Utilities::MPI::this_mpi_process(communicator)));
     amg->initialize(*matrix, parameters);

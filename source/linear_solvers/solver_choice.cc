@@ -17,15 +17,15 @@ namespace Viscoplastic
       double seconds, exponent;
     };
 
-    /// The seconds of the solvers in one dimension at @p n_dofs.
+    /// The costs of the solvers in 2D or 3D, as seconds at `n_dofs` unknowns.
     struct Costs
     {
       double n_dofs;
-      /// A new mesh without a factorization, and what that adds.
+      /// The set-up of a new mesh, and the factorization in addition.
       Power mesh, factorization;
       Power direct_step, multigrid_step;
-      /// How many times more a step with algebraic multigrid takes than one
-      /// with geometric multigrid.
+      /// How many times as long a step takes with algebraic multigrid as with
+      /// geometric multigrid.
       double algebraic;
 
       double
@@ -48,7 +48,7 @@ namespace Viscoplastic
 
 
 
-    /// How many times more iterations nearly incompressible bodies take.
+    /// The factor by which near incompressibility raises iteration counts.
     double
     growth_by_incompressibility(const double poissons_ratio)
     {
@@ -59,7 +59,7 @@ namespace Viscoplastic
 
 
 
-    /// Whether geometric multigrid has meshes to work on.
+    /// Whether there are coarser meshes for geometric multigrid.
     bool
     has_levels(const SolverDemand &demand)
     {
@@ -75,11 +75,11 @@ namespace Viscoplastic
     prefer_direct(const SolverDemand &demand)
     {
       const auto [dim, n_dofs] = std::make_pair(demand.dim, demand.n_dofs);
-      // The dense face problem: 200 MB and a cubic set-up. Beyond, the memory
-      // of the factor.
+      // Beyond 5000 unknowns, the dense face matrix has more than 200 MB and a
+      // cubic set-up; large meshes lack the memory for the factor.
       if (demand.n_face_dofs > 5000 || n_dofs >= (dim == 2 ? 2000000 : 200000))
         return false;
-      // An exact solution, where it costs next to nothing.
+      // Small systems are solved exactly, which costs next to nothing.
       constexpr unsigned int large_face = 1500;
       if (!(demand.has_friction && demand.n_face_dofs > large_face) &&
           n_dofs < (demand.n_solves < 4 && has_levels(demand) ? 2000 : 20000))
@@ -114,7 +114,7 @@ namespace Viscoplastic
   bool
   has_small_first_mesh(const SolverDemand &demand)
   {
-    // It is solved on directly whenever its stick set changes.
+    // The first mesh's matrix is factorized whenever its stick set changes.
     using Number       = std::uint64_t;
     const Number share = demand.n_dofs / 20;
     return demand.n_first_dofs > 0 &&
@@ -150,14 +150,15 @@ namespace Viscoplastic
   SolverCost
   expected_cost(const BulkSolverKind kind, const SolverDemand &demand)
   {
-    // What small systems take, whatever their solver.
+    // The costs of small systems, whatever their solver.
     constexpr double least_set_up = 1e-3, least_step = 2.5e-3;
     const Costs      c      = costs(demand.dim);
     const double     n      = demand.n_dofs;
     const double     set_up = least_set_up + c.at(c.mesh, n);
     if (kind == BulkSolverKind::direct)
       {
-        // Some 60 products of a step with friction, limited by memory.
+        // A step with friction has some 60 products with the face matrix, which
+        // memory bandwidth limits.
         constexpr double by_entry = 1e-7;
         const double     n_face =
           demand.has_friction ? static_cast<double>(demand.n_face_dofs) : 0.;
@@ -165,7 +166,7 @@ namespace Viscoplastic
                 least_step + c.at(c.direct_step, n) +
                   by_entry * n_face * n_face};
       }
-    // Cycles of algebraic multigrid on the first mesh.
+    // The factor for cycles of algebraic multigrid on a large first mesh.
     constexpr double large_first_mesh = 1.6;
     const double     factor = kind == BulkSolverKind::algebraic_multigrid ?
                                 c.algebraic :
@@ -184,9 +185,9 @@ namespace Viscoplastic
                    const double       n_steps,
                    const unsigned int n_ranks)
   {
-    // Counted by benchmarks/counts.py: linear iterations of a step, messages
-    // and reductions of one; seconds of a message and of a stage of a
-    // reduction.
+    // benchmarks/counts.py counts linear iterations of a step and the messages
+    // and reductions of an iteration. The latency is in seconds, of a message
+    // and of a stage of a reduction.
     constexpr double n_iterations = 17., n_messages = 50., n_reductions = 34.,
                      latency = 1e-6;
     demand.n_ranks           = n_ranks;
@@ -230,8 +231,8 @@ namespace Viscoplastic
     const double       vectors = n_dofs * 20. * 8.; // some 20
     if (kind == BulkSolverKind::geometric_multigrid)
       return matrix + vectors + n_dofs * (dim == 2 ? 1200. : 1500.);
-    // A second matrix without the prescribed rows, of 12 bytes an entry, and
-    // ML.
+    // Algebraic multigrid has a second matrix without the prescribed rows, of
+    // 12 bytes an entry, and ML's hierarchy.
     if (kind == BulkSolverKind::algebraic_multigrid)
       return matrix + vectors +
              n_dofs * (dim == 2 ? 18. * 12. + 850. : 81. * 12. + 2700.);

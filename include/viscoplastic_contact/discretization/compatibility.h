@@ -13,24 +13,24 @@ namespace Viscoplastic
   template <int dim>
   struct CompatibilityViolation
   {
-    /// The largest nodal imbalance over that of the loads.
+    /// The norm of unbalanced nodal forces over that of the loads.
     double relative = 0.;
-    /// The node with the largest force that nothing balances, and the
-    /// boundaries that it is on; none inside of the body.
+    /// The node with the largest unbalanced force, and the boundaries that it
+    /// is on; none inside of the body.
     Point<dim>                   position;
     std::set<types::boundary_id> boundaries;
     /// Whether the imbalance is that of the axial force.
     bool is_axial = false;
   };
 
-  /// The violation of compatibility (2.12),
+  /// Return the violation of compatibility (2.12),
   ///
   ///     (sigma0, eps(v)) + j(v) >= L(0, v)  for all v,
   ///
   /// relative to the loads: the norm of the residual off Gamma_3 and of its
-  /// excess over the friction ball on Gamma_3. Evaluated with sigma0 itself by
-  /// quadrature: its projection would violate equilibrium by O(h). Also gives
-  /// the multipliers at t = 0. @p face is null without contact points.
+  /// excess over the friction ball on Gamma_3. sigma0 itself is integrated by
+  /// quadrature, as its projection violates equilibrium by O(h). @p contact
+  /// gets the multipliers at t = 0. @p face is null without contact points.
   /// Collective.
   template <int dim>
   CompatibilityViolation<dim>
@@ -52,10 +52,10 @@ namespace Viscoplastic
     std::set<types::boundary_id> boundaries;
   };
 
-  /// Find that at the first end of a phase at which they differ; absent: at
-  /// none. No displacement of finite energy jumps on the boundary: that of a
-  /// mesh does within a cell, and its energy grows with each finer one.
-  /// Collective.
+  /// Return the jump at the first end of a phase at which prescribed
+  /// displacements differ, or nothing. Displacements of finite energy do not
+  /// jump on the boundary; those of a mesh do within a cell, with an energy
+  /// that grows with each refinement. Collective.
   template <int dim>
   std::optional<DisplacementJump<dim>>
   first_jump(const AdmissibleSpace<dim> &space);

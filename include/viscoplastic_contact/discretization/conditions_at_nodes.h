@@ -16,25 +16,25 @@ namespace Viscoplastic
   using namespace dealii;
 
   /// The conditions of displacement and contact, those of supports last, and
-  /// for each owned node the bits of those that it carries.
+  /// for each owned node the bits of the conditions that it carries.
   template <int dim>
   struct ConditionsAtNodes
   {
     std::vector<const BoundaryCondition<dim> *> conditions;
     std::vector<std::uint64_t>                  mask;
-    /// Whether a node is of absent materials alone, whose contact is still to
-    /// come or gone: it stays where it is, or follows what lies opposite. Empty
-    /// where contact is the same in all stages.
+    /// Whether a node belongs to absent materials only, and to contact in
+    /// another stage: it stays where it is, or follows the body opposite. Empty
+    /// if contact is the same in all stages.
     std::vector<bool> waits;
   };
 
-  /// Which conditions the nodes of a mesh carry: those of the boundary faces
-  /// that they are on, but not of absent materials beside the body, of contact
-  /// of absent materials, or with another body where nothing lies opposite, or
-  /// at hanging nodes.
-  /// @p node_position: of each owned node. Owners know all ids at their nodes,
-  /// since every neighbor of an owned cell is at least a ghost. Throws
-  /// ExcMessage where there are more than 52 conditions.
+  /// Return which conditions the nodes of a mesh carry: those of their boundary
+  /// faces, except those of absent materials at nodes of the body, contact of
+  /// absent materials, contact with another body where nothing lies opposite,
+  /// and all conditions at hanging nodes. @p node_position: of each owned node.
+  /// Owners know all ids at their nodes, since every neighbor of an owned cell
+  /// is at least a ghost. Throws ExcMessage where there are more than 52
+  /// conditions.
   template <int dim>
   ConditionsAtNodes<dim>
   conditions_at_nodes(

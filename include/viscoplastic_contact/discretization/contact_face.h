@@ -19,9 +19,9 @@ namespace Viscoplastic
 {
   /// Gamma_3 on the mesh: makes the points of a ContactLayout from the nodes
   /// with friction or unilateral contact, the bounds rho_c(t) = int rho(x,t)
-  /// phi_c, and the gaps g_c = g(x_c), with phi_c the basis functions that
-  /// hanging nodes leave. Each rank has the points of the nodes that it owns,
-  /// in the order of their positions.
+  /// phi_c, and the gaps g_c = g(x_c), with the basis functions phi_c that
+  /// hanging-node constraints leave. Each rank has the points of the nodes that
+  /// it owns, in the order of their positions.
   template <int dim>
   class ContactFace
   {
@@ -41,8 +41,8 @@ namespace Viscoplastic
       return face_restriction;
     }
 
-    /// Frictional boundaries all of whose nodes other conditions constrain. The
-    /// same on all ranks.
+    /// The boundaries with a law of contact but no contact points, since other
+    /// conditions hold their nodes. The same on all ranks.
     std::set<types::boundary_id>
     held_boundaries() const;
 
@@ -65,15 +65,15 @@ namespace Viscoplastic
                const double             t_old,
                const double             t) const;
 
-    /// rho_c of each point at slip rates (empty: zero), of obstacles g_c. Where
-    /// the pressure comes out, rho_c is zero. Throws ExcMessage for negative
-    /// bounds. Collective.
+    /// Return rho_c of each friction point at @p slip_rates (empty: zero), and
+    /// g_c of each obstacle. Bounds that follow the computed pressure are zero.
+    /// Throws ExcMessage for negative bounds. Collective.
     std::vector<double>
     bounds(const double t, const std::vector<double> &slip_rates = {}) const;
 
-    /// The bounds of a step to time t, of obstacles what is left of g_c at @p
-    /// u, the displacement at the beginning of the step (in frames) with the
-    /// prescribed values of its end. Collective.
+    /// Return the bounds of a step to time t, for obstacles the remaining gap
+    /// at @p u: the displacement at the beginning of the step (in frames) with
+    /// the prescribed values of its end. Collective.
     std::vector<double>
     step_bounds(const double               t,
                 const DistributedVector   &u,
@@ -99,7 +99,7 @@ namespace Viscoplastic
     /// those of its end.
     struct MissedBounds
     {
-      /// The sum of the bounds of the step itself, and of the differences.
+      /// The sums of the bounds at the end of the step, and of the differences.
       double sum = 0., missed = 0.;
       /// The sum of the differences times the slips.
       double work = 0.;
@@ -110,8 +110,7 @@ namespace Viscoplastic
     MissedBounds
     missed_bounds(const State<dim> &state) const;
 
-    /// Whether any friction bound is that of the computed pressure, on any
-    /// rank.
+    /// Whether any friction bound follows the computed pressure, on any rank.
     bool
     has_computed_pressure() const
     {
@@ -173,7 +172,7 @@ namespace Viscoplastic
     Tensor<1, dim>
     cartesian(const unsigned int point, const Tensor<1, 2> &multiplier) const;
 
-    /// sum_c lambda_c of friction, or of obstacles. Collective.
+    /// The resultant sum_c lambda_c of friction, or of obstacles. Collective.
     Tensor<1, dim>
     resultant(const ContactState &state, const bool of_obstacles = false) const
     {
@@ -185,8 +184,8 @@ namespace Viscoplastic
       return Utilities::MPI::sum(sum, space.communicator);
     }
 
-    /// The part of the force of a point that is on a boundary, by its area; 1
-    /// where no other one has contact points.
+    /// The share of a boundary in the force of a point, by its area; 1 where no
+    /// other boundary has contact points.
     double
     area_share(const types::boundary_id id, const unsigned int point) const
     {
@@ -222,30 +221,29 @@ namespace Viscoplastic
     std::vector<Tensor<1, 2>>
     foundation_step(const double t_old, const double t) const;
 
-    /// The slip that a change of the displacement (in frames, owned entries)
-    /// means at each point, relative to a step of the foundation (empty: at
-    /// rest).
+    /// The slip at each point for a change of the displacement (in frames,
+    /// owned entries), relative to a step of the foundation (empty: at rest).
     std::vector<Tensor<1, 2>>
     slips(const DistributedVector         &change,
           const std::vector<Tensor<1, 2>> &foundation_step = {}) const;
 
-    /// The multiplier as a nodal density lambda_c/m_c, Cartesian and with
-    /// ghosts; zero off Gamma_3, but that of the reverse forces on the other
-    /// side where there is one. That of obstacles is part of it, unless @p
-    /// of_friction_alone. Collective.
+    /// Return multipliers as a nodal density lambda_c/m_c, Cartesian and with
+    /// ghosts; zero off Gamma_3, except for the reverse forces on the primary
+    /// side of interfaces. Obstacles are included unless @p of_friction_alone.
+    /// Collective.
     DistributedVector
     density(const ContactState &state,
             const bool          of_friction_alone = false) const;
 
-    /// The multipliers of a density (Cartesian, with ghosts), for a face on a
-    /// new mesh; zero at nodes with several points, which it does not tell
-    /// apart.
+    /// Return the multipliers of a density (Cartesian, with ghosts), for a face
+    /// on a new mesh; zero at nodes with points that a density cannot
+    /// distinguish.
     std::vector<Tensor<1, 2>>
     multipliers(const DistributedVector &ghosted_density) const;
 
-    /// A value a point as a nodal field, with ghosts: at the first component of
-    /// each node, the mean over its points of friction, or over its obstacles.
-    /// Collective.
+    /// Return one value per point as a nodal field with ghosts: at the first
+    /// component of each node, the mean over its points of friction, or over
+    /// its obstacles. Collective.
     DistributedVector
     nodal_field(const std::vector<double> &values,
                 const bool                 of_obstacles = false) const;
@@ -266,9 +264,9 @@ namespace Viscoplastic
       const BoundaryCondition<dim> *condition;
     };
 
-    /// value is added to the point for each unit of rho, or of area for an
-    /// obstacle, at the sample.
-    /// Points of other ranks come behind those of this one, see `numbers`.
+    /// The weight `value` of a sample in the integral over phi_c of a point.
+    /// Points of other ranks are numbered after those of this one, see
+    /// `numbers`.
     struct Share
     {
       unsigned int sample, point;
@@ -291,9 +289,9 @@ namespace Viscoplastic
     void
     make_area_shares();
 
-    /// Sums of the shares of each point of friction, each times factor(sample)
-    /// and what its slip rate does (null: nothing; empty: zero), or of
-    /// each obstacle. Collective.
+    /// Sum the shares of each friction point, or of each obstacle, times
+    /// factor(sample) and times the factor of the point's slip rate (null:
+    /// none; empty: of rate zero). Collective.
     std::vector<double>
     sum_shares(const std::function<double(const Sample &)> &factor,
                const bool                       of_obstacles = false,
@@ -308,8 +306,8 @@ namespace Viscoplastic
     std::map<types::boundary_id, std::vector<double>> area_shares;
     std::vector<Sample>                               samples;
     std::vector<Share>                                shares;
-    /// The points of this rank, and of others that get shares here; none where
-    /// no rank has points.
+    /// Numbers the points of this rank, and those of others that get shares
+    /// here; null where no rank has points.
     std::shared_ptr<const Utilities::MPI::Partitioner> numbers;
     std::vector<double>                                point_weights;
     /// int phi over the primary boundaries, at first components of nodes.

@@ -8,8 +8,8 @@
 
 namespace Viscoplastic
 {
-  /// The largest tensile contact stress of bilateral contact, and its place:
-  /// such contact cannot open, so tension shows that the model does not hold.
+  /// The area of bilateral contact under tension: such contact cannot open, so
+  /// tension shows that the model does not hold.
   template <int dim>
   class ContactTension
   {
@@ -17,6 +17,7 @@ namespace Viscoplastic
     /// Collective.
     explicit ContactTension(const StressSpace<dim> &stress_space);
 
+    /// The area of bilateral contact that is not glued.
     double
     area() const
     {
@@ -43,14 +44,14 @@ namespace Viscoplastic
 
 
 
-  /// How far two bodies slide along each other, and what of a face finds
-  /// nothing opposite: they touch where they did at first, so that what lies
-  /// opposite is right as long as slides are small beside a face.
+  /// How far two bodies slide along each other, and the part of a face with
+  /// nothing opposite. Places opposite are those of the undeformed bodies,
+  /// which holds as long as slides are small compared with a face.
   template <int dim>
   class InterfaceSlide
   {
   public:
-    /// The argument stays in use. Collective.
+    /// Keeps a reference to the argument. Collective.
     explicit InterfaceSlide(const AdmissibleSpace<dim> &space);
 
     /// The largest slide of a node over the width of its largest face, the root

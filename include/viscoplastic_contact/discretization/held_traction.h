@@ -9,8 +9,9 @@
 
 namespace Viscoplastic
 {
-  /// int phi over some boundaries, of the basis functions that hanging nodes
-  /// leave, at the first entry of each node. Collective.
+  /// Return int phi over the boundaries @p ids, with the basis functions phi
+  /// that hanging-node constraints leave, at the first entry of each node.
+  /// Collective.
   template <int dim>
   LinearAlgebra::distributed::Vector<double>
   boundary_weights(const AdmissibleSpace<dim>         &space,
@@ -24,16 +25,17 @@ namespace Viscoplastic
   class HeldTraction
   {
   public:
-    /// The argument stays in use. Collective.
+    /// Keeps a reference to the argument. Collective.
     explicit HeldTraction(const AdmissibleSpace<dim> &space);
 
+    /// Whether the scene has interfaces that are glued or bilateral.
     static bool
     is_needed(const Scene<dim> &scene);
 
-    /// Add the nodal density lambda_p/m_p, Cartesian with ghosts, as
-    /// ContactFace::density() has those of contact points: with the reverse
-    /// forces on the other side. @p missing is L(v) - (sigma_h, eps(v)), in
-    /// frames; @p density may be empty before. Collective.
+    /// Add the nodal density lambda_p/m_p, Cartesian with ghosts, and that of
+    /// the reverse forces on the other side, like ContactFace::density().
+    /// @p missing is the residual L(v) - (sigma_h, eps(v)), in frames; an empty
+    /// @p density counts as zero. Collective.
     void
     add_density(const DistributedVector &missing,
                 DistributedVector       &density) const;

@@ -8,36 +8,36 @@
 
 namespace Viscoplastic
 {
-  /// u0^h, the projection of u0 in (eps(u), eps(v)), and
-  /// z_0 = sigma0^h - E eps(u0^h) with the L2 projection sigma0^h of sigma0;
-  /// zero fields stay absent. Collective.
+  /// Return the state at t = 0: u0^h, the projection of u0 in (eps(u), eps(v)),
+  /// and z_0 = sigma0^h - E eps(u0^h) with the L2 projection sigma0^h of
+  /// sigma0; zero fields stay absent. Collective.
   ///
   /// Throws ExcMessage if u0 contradicts the displacements prescribed at t = 0,
-  /// unless @p equilibrate will mend that.
+  /// unless @p equilibrate is true.
   template <int dim>
   State<dim>
   make_initial_state(const StressSpace<dim> &stress_space,
                      const bool              equilibrate);
 
-  /// The displacement as it is reported: that of @p state, or if the scene asks
-  /// for `Reset displacement' what has been added to u_0, written to
-  /// @p difference. Cartesian, with ghosts.
+  /// Return the displacement to report: that of @p state, or with `Reset
+  /// displacement` its difference from u_0, which is written to @p difference.
+  /// Cartesian, with ghosts.
   template <int dim>
   const DistributedVector &
   reported_displacement(const Scene<dim>  &scene,
                         const State<dim>  &state,
                         DistributedVector &difference);
 
-  /// sigma0 at x in a cell of material @p id; zero where that is absent, or has
-  /// come later.
+  /// sigma0 at x in a cell of material @p id; zero if the material is absent,
+  /// or is added after t = 0.
   template <int dim>
   SymmetricTensor<2, 3>
   initial_stress(const Scene<dim>        &scene,
                  const Point<dim>        &x,
                  const types::material_id id);
 
-  /// int sigma0 : eps(v) as a load in frames, by quadrature with this number
-  /// of points in each direction.
+  /// int sigma0 : eps(v), including the initial thermal stress, as a load in
+  /// frames, by quadrature with @p n_points points in each direction.
   template <int dim>
   DistributedVector
   work_of_initial_stress(const AdmissibleSpace<dim> &space,
@@ -52,20 +52,20 @@ namespace Viscoplastic
 
   /// |u0 - u0^h| in the energy norm plus |sigma0 - sigma0^h| in that of
   /// stresses, (int E^-1 s : s)^{1/2}, by quadrature, where sigma0^h is the
-  /// polynomial through the samples of a cell; @p state as
-  /// make_initial_state() gives it. Zero and free without initial data. @p
-  /// squared_by_cell gets the squares that active cells contribute, zero on
-  /// cells of other ranks, unless it is null. Collective.
+  /// polynomial through the samples of a cell; @p state as make_initial_state()
+  /// gives it. Zero without initial data. @p squared_by_cell gets the squares
+  /// that active cells contribute, zero on cells of other ranks, unless it is
+  /// null. Collective.
   template <int dim>
   double
   initial_data_error(const StressSpace<dim> &stress_space,
                      const State<dim>       &state,
                      Vector<double>         *squared_by_cell = nullptr);
 
-  /// Let the present stage of construction begin with a state of the one
-  /// before: cells that have gone have no stress, and those that have come have
-  /// none in the place that the body has moved to, z = -E eps(u). @p
-  /// was_present: by owned cell, in the stage before.
+  /// Turn the state at the end of a stage of construction into that at the
+  /// beginning of the present one: removed cells have no stress, and added ones
+  /// have none in the deformed body, z = -E eps(u). @p was_present: by owned
+  /// cell, in the stage before.
   template <int dim>
   void
   enter_stage(const StressSpace<dim>  &stress_space,

@@ -19,8 +19,8 @@
 
 namespace Viscoplastic
 {
-  /// A face of the primary side, for other ranks; each of its vertices is an
-  /// independent node, or what it hangs on.
+  /// A face of the primary side, to send to other ranks. Each vertex has its
+  /// independent node, or the parents of a hanging node with their weights.
   template <int dim>
   struct PrimaryFace : SurfaceFace<dim>
   {
@@ -71,8 +71,9 @@ namespace Viscoplastic
         begins[r] = std::min(begins[r], begins[r + 1]);
     }
 
-    /// Call @p act (cell, face) for the faces with an id, on owned cells and
-    /// ghosts; of flat sides those that look along @p sign times the normal.
+    /// Call @p act (cell, face) for the faces with boundary id @p id on owned
+    /// and ghost cells; of flat sides those with an outward normal along
+    /// @p sign times that of the pair.
     template <typename Action>
     void
     for_each_face(const types::boundary_id id,
@@ -189,8 +190,8 @@ namespace Viscoplastic
       return BoundingBox<dim>(places);
     }
 
-    /// Whether a face of the other side has an outward normal against this one:
-    /// a cosine below -0.2. Always, of flat sides.
+    /// Whether the outward normal of a face of the other side is opposite to
+    /// @p normal, by a cosine below -0.2. Always true of flat sides.
     bool
     faces(const Tensor<1, dim> &normal, const SurfaceFace<dim> &other) const
     {

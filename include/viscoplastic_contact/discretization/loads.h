@@ -33,14 +33,14 @@ namespace Viscoplastic
   ///     L(t,v) = int b.v + int_Gamma2 (F - p nu).v + int_Gamma3 S v_nu
   ///
   /// and, in generalized plane strain, N eps_zz(v), with nu as it is on the
-  /// faces of the mesh. What does not depend on time is integrated once.
+  /// faces of the mesh. Parts that do not depend on time are integrated once.
   template <int dim>
   class Loads
   {
   public:
     explicit Loads(const AdmissibleSpace<dim> &space);
 
-    /// L(t, .). Collective.
+    /// Return the loads at time t. Collective.
     Load<dim>
     assemble(const double t) const;
 
@@ -54,7 +54,7 @@ namespace Viscoplastic
       const BoundaryCondition<dim> *condition;
     };
 
-    /// Add the part of the load that does (or does not) depend on time.
+    /// Add the part of the load that does or does not depend on time.
     void
     add(const double t, const bool time_dependent, Load<dim> &load) const;
 

@@ -13,9 +13,9 @@
 
 namespace Viscoplastic
 {
-  /// Of a node of the secondary boundary the nodes of the primary one, and the
-  /// weights, of which the displacement opposite is the sum. Nodes have the
-  /// numbers of NodeHierarchy.
+  /// The nodes of the primary boundary and their weights in the displacement
+  /// opposite to a node of the secondary one. Nodes have the numbers of
+  /// NodeHierarchy.
   struct MortarRow
   {
     std::vector<NodeHierarchy::Parent> nodes;
@@ -35,20 +35,20 @@ namespace Viscoplastic
   ///     int_e psi_p phi_q = delta_pq int_e phi_p
   ///
   /// (Wohlmuth, SIAM J. Numer. Anal. 38, 2000). v is taken where the normal at
-  /// a place of e meets the primary side, whose vertices cut e; integrals are
-  /// exact for flat faces that are parallelograms. With a hanging node h
-  /// between a and b, (Q v)_a becomes
+  /// a place of e meets the primary side, and e is cut along that side's faces;
+  /// integrals are exact for flat faces that are parallelograms. With a hanging
+  /// node h between a and b, (Q v)_a becomes
   ///
   ///     (Q v)_a + sum_h c_h ((Q v)_h - (Q v)_a/2 - (Q v)_b/2),
   ///     c_h = D_h/(D_a + D_b),
   ///
   /// where D are the integrals of the basis functions, for a and b of those
-  /// that hanging nodes leave. So linear v are exact, and sum_p D_p (Q v)_p is
-  /// the integral of v: rigid motions meet no resistance, and a constant
-  /// pressure passes the interface as it is.
+  /// that hanging-node constraints leave. So linear v are exact, and sum_p D_p
+  /// (Q v)_p is the integral of v: rigid motions meet no resistance, and a
+  /// constant pressure passes the interface as it is.
   ///
   /// Returns the rows of independent nodes among the locally relevant ones,
-  /// without those of which some part of the support has nothing opposite.
+  /// except those with nothing opposite to some part of their support.
   /// Collective.
   template <int dim>
   MortarRows
@@ -69,9 +69,9 @@ namespace Viscoplastic
   };
 
 
-  /// What lies opposite to a place of the secondary boundary along the normal:
-  /// a place of the primary one, where the displacement is the sum of those of
-  /// nodes with weights, the way there, and what softness() has for the face.
+  /// The place of the primary boundary opposite to a place of the secondary one
+  /// along the normal: the nodes and weights of its displacement, the vector to
+  /// it, and the softness of its face.
   template <int dim>
   struct PlaceOpposite
   {

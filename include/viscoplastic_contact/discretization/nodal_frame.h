@@ -11,10 +11,10 @@
 namespace Viscoplastic
 {
   /// The slip that one friction point can make. At a node where Gamma_3 is flat
-  /// this is the tangent plane. Where pieces meet at an angle there is one
-  /// point a piece; its slip is the part of the piece's tangential displacement
-  /// that the other conditions at the node leave free. Pieces whose foundations
-  /// move in different ways have a point each, too.
+  /// this is the tangent plane. Where pieces meet at an angle each piece has a
+  /// point, whose slip is the part of the piece's tangential displacement that
+  /// the other conditions at the node leave free. Pieces whose foundations move
+  /// in different ways have a point each, too.
   template <int dim>
   struct FrictionPlane
   {
@@ -28,23 +28,22 @@ namespace Viscoplastic
   };
 
 
-  /// A plane of the foundation that keeps a node on its side: what of the
-  /// normal displacement the other conditions at the node leave free, and what
-  /// they prescribe of it.
+  /// A plane of the foundation that a node must not pass: the parts of the
+  /// node's normal displacement that other conditions leave free and prescribe.
   template <int dim>
   struct Obstacle
   {
-    /// u_n = map u + fixed u: rows over the frame components of the node, of
-    /// which the first sees those that are free.
+    /// u_n = map u + fixed u: rows over the frame components of the node; `map`
+    /// is zero for fixed components, `fixed` for free ones.
     Tensor<1, dim> map, fixed;
-    /// Boundary ids with this normal; all of them give way, or none.
+    /// Boundary ids with this normal; either all or none are compliant.
     std::vector<types::boundary_id> boundary_ids;
     bool                            gives_way = false;
   };
 
 
   /// The orthonormal frame of displacement components at a node, chosen so that
-  /// what is prescribed there are single components.
+  /// conditions fix single components.
   template <int dim>
   struct NodalFrame
   {
@@ -55,11 +54,10 @@ namespace Viscoplastic
     /// The first n_fixed entries of `fixed` are prescribed components.
     std::array<unsigned int, dim> fixed;
     unsigned int                  n_fixed = 0;
-    /// The accepted conditions direction . u = datum, as many as components are
-    /// fixed (not one by one: they may be oblique to each other, see
-    /// condition_matrix()): their directions, and whose datum it is (boundary
-    /// id, and for given components the component, otherwise
-    /// numbers::invalid_unsigned_int).
+    /// The accepted conditions direction . u = datum, n_fixed in number, which
+    /// may be oblique to each other (see condition_matrix()): their directions,
+    /// and the boundary id and component of the datum
+    /// (numbers::invalid_unsigned_int if it belongs to a normal).
     std::array<Tensor<1, dim>, dim>     condition_direction;
     std::array<types::boundary_id, dim> condition_boundary;
     std::array<unsigned int, dim>       condition_component;
@@ -70,9 +68,9 @@ namespace Viscoplastic
 
   /// The frame of a node where @p conditions meet (in the order of their ids).
   /// Where conditions compete, those that fix more come first: clamped, given
-  /// components, glued, symmetry, bilateral contact, supports; a condition
-  /// whose direction depends on the others is dropped. Conditions on curved
-  /// boundaries have the normal @p varying_normal here.
+  /// components, glued, symmetry, bilateral contact, supports, glued to another
+  /// body; a condition whose direction depends on the others is dropped.
+  /// Conditions on curved boundaries have the normal @p varying_normal here.
   template <int dim>
   NodalFrame<dim>
   make_nodal_frame(

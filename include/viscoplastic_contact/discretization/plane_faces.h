@@ -12,15 +12,15 @@
 #include <cmath>
 #include <vector>
 
-// Faces of two bodies in the plane across a normal: where they are, what they
-// have in common, and the dual basis functions on them; and faces of curved
+// Faces of two bodies in the plane perpendicular to a normal: reference
+// coordinates, intersections, and dual basis functions; and faces of curved
 // surfaces.
 
 namespace Viscoplastic
 {
   using namespace dealii;
 
-  /// A face seen along the normal: d-linear in the plane across it.
+  /// A face projected along a normal: d-linear in the perpendicular plane.
   template <int d>
   using PlaneFace = std::array<Point<d>, GeometryInfo<d>::vertices_per_cell>;
 
@@ -29,7 +29,7 @@ namespace Viscoplastic
 
 
 
-  /// Coordinates across a normal.
+  /// The projection onto coordinates in the plane perpendicular to a normal.
   template <int dim>
   class Projection
   {
@@ -65,8 +65,8 @@ namespace Viscoplastic
 
 
 
-  /// A face of a surface with a normal at each vertex, which varies between
-  /// them as positions do.
+  /// A face of a surface with a normal at each vertex; between vertices,
+  /// normals are interpolated like positions and normalized.
   template <int dim>
   struct SurfaceFace
   {
@@ -96,7 +96,7 @@ namespace Viscoplastic
       return result / result.norm();
     }
 
-    /// How far the surface is from the face: half of the way to the tangent
+    /// The vector from the face to the surface: half of the way to the tangent
     /// planes at the vertices (Boubekeur and Alexa, ACM Trans. Graphics 27,
     /// 2008), which is exact for quadrics.
     Tensor<1, dim>
@@ -113,15 +113,15 @@ namespace Viscoplastic
       return result;
     }
 
-    /// Where in the plane across @p axis, in which @p seen is this face, the
-    /// place is from which @p x lies along the normal; beyond the face, along
-    /// the normal at its edge.
+    /// The place on the face from which @p x lies along the normal, or beyond
+    /// the face along the normal at its edge. Coordinates are in the plane
+    /// perpendicular to @p axis, in which the face is @p seen.
     Point<dim - 1>
     foot_of(const Point<dim>         &x,
             const Tensor<1, dim>     &axis,
             const PlaneFace<dim - 1> &seen) const;
 
-    /// The face seen along a direction.
+    /// The face projected along a direction.
     PlaneFace<dim - 1>
     seen(const Projection<dim> &along) const
     {
@@ -189,9 +189,8 @@ namespace Viscoplastic
   reference_position(const PlaneFace<d> &face, const Point<d> &x)
   {
     Point<d> xi = reference_center<d>();
-    // One step where the face is a parallelogram. What a step of this size
-    // leaves is its square, below the rounding of small faces far from the
-    // origin.
+    // One step is exact on parallelograms. After a step of 1e-8, the error is
+    // its square, below the rounding of small faces far from the origin.
     double change = 1.;
     for (unsigned int n = 0; change > 1e-8; ++n)
       {
@@ -207,7 +206,7 @@ namespace Viscoplastic
 
 
 
-  /// The same on the face or at its edge.
+  /// The reference position of the place of the face nearest to @p x.
   template <int d>
   Point<d>
   nearest_reference_position(const PlaneFace<d> &face, const Point<d> &x)
@@ -235,7 +234,7 @@ namespace Viscoplastic
     const Projection<dim> along(axis);
     const double          size = (vertices[n - 1] - vertices[0]).norm();
     Point<dim - 1>        foot = along(x);
-    // Along the normal at the foot before, whose error falls by the distance
+    // Going along the normal at the last foot reduces the error by the distance
     // over the radius of curvature.
     double change = size;
     for (unsigned int i = 0; i < 50 && change > 1e-12 * size; ++i)
@@ -290,7 +289,7 @@ namespace Viscoplastic
 
 
 
-  /// See above; of convex faces.
+  /// Whether a place is on a convex face, or beside it by rounding.
   inline bool
   contains(const PlaneFace<2> &face, const Point<2> &x)
   {
@@ -305,7 +304,7 @@ namespace Viscoplastic
 
 
   /// Clip one convex quadrilateral at the edges of the other (Sutherland and
-  /// Hodgman, Comm. ACM 17, 1974), which rounding does not trouble where edges
+  /// Hodgman, Comm. ACM 17, 1974), which is robust to rounding where edges
   /// coincide, and cut the rest into triangles.
   inline std::vector<Simplex<2>>
   intersection(const PlaneFace<2> &a, const PlaneFace<2> &b)
@@ -364,9 +363,9 @@ namespace Viscoplastic
 
 
 
-  /// Dual basis functions on a face: coefficients of psi_i in phi_j, and the
-  /// integrals of phi_i, by a quadrature in reference coordinates. Whatever
-  /// that is, it finds linear functions as they are.
+  /// Dual basis functions psi_i on a face: their coefficients in the phi_j, and
+  /// the integrals of phi_i, by a quadrature in reference coordinates. With any
+  /// quadrature, linear functions are reproduced exactly.
   template <int d>
   struct DualBasis
   {

@@ -13,11 +13,11 @@ namespace Viscoplastic
   class PointProbe
   {
   public:
-    /// Collective. If @p x is not in the body, it is the nearest place there,
-    /// as where finer meshes follow a curved boundary better.
+    /// If @p x is not in the body, the nearest place in it is taken, as where
+    /// finer meshes follow a curved boundary better. Collective.
     PointProbe(const AdmissibleSpace<dim> &space, const Point<dim> &x);
 
-    /// Collective.
+    /// Return the displacement at the point. Collective.
     Tensor<1, dim>
     value(const DistributedVector &ghosted_u) const
     {
@@ -29,8 +29,8 @@ namespace Viscoplastic
       return Utilities::MPI::sum(result, communicator);
     }
 
-    /// Add what a force at the point does to the nodes of its cell, to a vector
-    /// in the order of `relevant`.
+    /// Add the nodal forces of a force at the point to @p cartesian, a vector
+    /// in the order of AdmissibleSpace::relevant.
     void
     add_force(const Tensor<1, dim> &force, std::vector<double> &cartesian) const
     {

@@ -19,13 +19,13 @@ namespace Viscoplastic
   /// part after the other.
   using RigidMotion = std::vector<double>;
 
-  /// The displacement of a place, relative to the center of rotations, in
-  /// each of the rigid motions.
+  /// The displacement in each of the rigid motions of a place @p x, relative to
+  /// the center of rotations.
   template <int dim>
   std::array<Tensor<1, dim>, n_rigid_motions<dim>>
   rigid_displacements(const Tensor<1, dim> &x);
 
-  /// Rigid motions in words; of several parts that of the one which moves
+  /// Rigid motions in words; for several parts the motion of the one that moves
   /// most.
   template <int dim>
   std::string
@@ -42,16 +42,16 @@ namespace Viscoplastic
       , triangle(n, n)
     {}
 
-    /// Givens rotations take a row into the triangle.
+    /// Add a row to the triangle by Givens rotations.
     void
     add(RigidMotion row);
 
-    /// The rows of all ranks. Collective.
+    /// Combine the rows of all ranks. Collective.
     void
     join(const MPI_Comm communicator);
 
-    /// An orthonormal basis of the motions that no row sees, but for what
-    /// coordinates in mesh files may miss.
+    /// An orthonormal basis of the motions that no row constrains, up to the
+    /// rounding of coordinates in mesh files.
     std::vector<RigidMotion>
     unseen() const;
 

@@ -13,14 +13,14 @@ namespace Viscoplastic
   struct SurfaceFace;
 
 
-  /// Outward normals at the nodes of curved boundaries on which two bodies are
-  /// in contact, of both sides: those of the faces around, each weighted by
-  /// 1/length in the plane, and in space by the sine of its angle over the
-  /// product of the edges there (Max, J. Graphics Tools 4, 1999), which is
-  /// exact where vertices lie on a circle or sphere. On a plane of symmetry
-  /// they are those of the body with its mirror image. Hanging nodes have the
-  /// mean of their parents', and are lifted to the surface, see
-  /// SurfaceFace::bulge().
+  /// Outward normals at the nodes of curved boundaries, of both sides, on which
+  /// two bodies are in contact: sums of those of adjacent faces, each weighted
+  /// by 1/length in the plane, and in space by the sine of the face's angle at
+  /// the node over the product of its edges there (Max, J. Graphics Tools 4,
+  /// 1999), which is exact where vertices lie on a circle or sphere. On a plane
+  /// of symmetry, normals are those of the body with its mirror image. Hanging
+  /// nodes have the mean of their parents' normals, and are lifted to the
+  /// surface, see SurfaceFace::bulge().
   template <int dim>
   class SurfaceNormals
   {
@@ -40,7 +40,7 @@ namespace Viscoplastic
          const unsigned int                             f) const;
 
     /// How far along the normals of a face to look for the other side: half of
-    /// the radius of curvature, where they meet.
+    /// the radius of curvature, at which normals meet.
     static double
     reach(const SurfaceFace<dim> &face);
 
@@ -56,9 +56,9 @@ namespace Viscoplastic
 
 
   /// Two boundaries in contact with each other. Multipliers belong to the nodes
-  /// of the secondary one, whose outward normal this is; where it is curved,
-  /// there are normals at the nodes of both instead. Faces of materials that
-  /// are absent belong to neither.
+  /// of the secondary one, whose outward normal is `normal`; where it is
+  /// curved, `normals` has those at the nodes of both instead. Faces of absent
+  /// materials belong to neither.
   template <int dim>
   struct ContactPair
   {
@@ -66,8 +66,8 @@ namespace Viscoplastic
     Tensor<1, dim>             normal;
     const SurfaceNormals<dim> *normals;
     const Scene<dim>          &scene;
-    /// Whether it is the pair of the absent faces of the secondary side with
-    /// all of the primary one, which they follow until they come.
+    /// Whether this is the pair of the absent secondary faces and the whole
+    /// primary side, which they follow until they are added.
     bool of_absent = false;
   };
 } // namespace Viscoplastic

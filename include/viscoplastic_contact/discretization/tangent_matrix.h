@@ -12,14 +12,14 @@ namespace Viscoplastic
   ///
   ///     a(u, v) + sum_s w_s (C_s - E) eps_s(u) : eps_s(v),
   ///
-  /// with an algorithmic tangent C_s at each sample, where the flow sees the
-  /// strain; the rest of the strain within cells stays elastic.
+  /// with an algorithmic tangent C_s at each sample of the flow law; strain
+  /// variations within cells that samples do not see stay elastic.
   template <int dim>
   class TangentMatrix
   {
   public:
-    /// @p elastic is the matrix of a(u, v); it stays in use. @p has_norms:
-    /// whether there are norm_ratio() and norm().
+    /// Keeps references to @p laws and @p elastic, the matrix of a(u, v).
+    /// @p has_norms: whether norm_ratio() and norm() are available.
     TangentMatrix(const FlowLaws<dim>     &laws,
                   const DistributedMatrix &elastic,
                   const bool               has_norms = true);
@@ -27,10 +27,10 @@ namespace Viscoplastic
     /// Whether the tangents depend on the step size alone.
     const bool is_constant;
 
-    /// Take the tangents of a step at the strain of @p ghosted_u and at z, of
-    /// the laws at its end with the history variables of its beginning, and
-    /// make the matrix of them, unless it has them already. Returns whether it
-    /// is another matrix now. Collective.
+    /// Compute the tangents at the strain of @p ghosted_u and at @p z, for the
+    /// laws at the end of the step and the history variables of its beginning,
+    /// and assemble the matrix if the tangents differ from its present ones.
+    /// Returns whether the matrix has changed. Collective.
     bool
     linearize(const DistributedVector              &ghosted_u,
               const IrreversibleStress             &z,
@@ -50,7 +50,7 @@ namespace Viscoplastic
       return tangents;
     }
 
-    /// The largest Poisson's ratio of the isotropic tensors next to the
+    /// The largest Poisson's ratio of the isotropic tensors nearest to
     /// tangents.
     double
     max_poissons_ratio() const
@@ -85,7 +85,7 @@ namespace Viscoplastic
     const FlowLaws<dim>               &laws;
     const DistributedMatrix           &elastic_matrix;
     const bool                         has_norms;
-    std::vector<SymmetricTensor<4, 3>> tangents, compliances; // a sample
+    std::vector<SymmetricTensor<4, 3>> tangents, compliances; // one per sample
     DistributedMatrix                  tangent_matrix;
     double                             step_size = 0., max_nu = -1., ratio = 1.;
   };

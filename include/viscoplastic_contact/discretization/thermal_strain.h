@@ -14,15 +14,15 @@ namespace Viscoplastic
   ///
   ///     sigma = E (eps(u) - alpha (T - T_0) I) + z':
   ///
-  /// the thermal stress -E alpha (T - T_0) I is a part of
-  /// z = sigma - E eps(u), which follows it from step to step, so that only
-  /// those who ask for what has flowed, or for the strain that a law knows,
-  /// must know of it. With cell means, that of the cell's center counts.
+  /// the thermal stress -E alpha (T - T_0) I is a part of z = sigma - E eps(u),
+  /// which is updated in each step, so that only code that needs the viscous
+  /// part of z, or the mechanical strain of a law, has to treat it. With cell
+  /// means, the temperature at the cell's center counts.
   template <int dim>
   class ThermalStrain
   {
   public:
-    /// The scene has a temperature. Collective.
+    /// The scene must have a temperature. Collective.
     explicit ThermalStrain(const StressSpace<dim> &stress_space);
 
     /// T and alpha (T - T_0) at each sample.
@@ -34,7 +34,7 @@ namespace Viscoplastic
 
     /// The temperature and thermal strain at the samples at time t, kept until
     /// another time is asked for. Throws ExcMessage where the temperature has
-    /// no value, or is not absolute but has to be. Collective.
+    /// no value, or is not positive but has to be absolute. Collective.
     std::shared_ptr<const Samples>
     at(const double t) const;
 
@@ -79,9 +79,9 @@ namespace Viscoplastic
 
 
 
-  /// z minus the thermal stress at time t: z itself without temperature (@p
-  /// thermal null), otherwise computed into @p rest; empty if that is all of z.
-  /// Collective.
+  /// Return z minus the thermal stress at time t: z itself without temperature
+  /// (@p thermal null), otherwise @p rest, which gets the difference, or stays
+  /// empty if z is only thermal stress. Collective.
   template <int dim>
   const IrreversibleStress &
   without_thermal_stress(const ThermalStrain<dim> *thermal,

@@ -10,14 +10,14 @@
 
 namespace Viscoplastic
 {
-  /// One cycle of smoothed aggregation for a first level that is large, as
-  /// meshes from files are.
+  /// A coarse solver for a coarsest level that is large, as meshes from files
+  /// are: one cycle of smoothed aggregation.
   ///
-  /// It is built for the masks of its first use and kept while they change,
-  /// until a tenth of them lets other directions free. Meanwhile its
-  /// corrections are cut to what is free, and the sweeps around it know the
-  /// present masks and springs. Cycles with the same masks, as without
-  /// friction, share one.
+  /// A cycle is built for the masks of its first use and kept until the free
+  /// directions of more than a tenth of the masks have changed. Meanwhile the
+  /// caller projects its corrections onto the free directions, and the smoother
+  /// uses the present masks and springs. Truncated and untruncated cycles with
+  /// equal masks, as without friction, share one.
   template <int dim>
   class AlgebraicCoarseSolver : public CoarseSolver<dim>
   {
@@ -26,8 +26,8 @@ namespace Viscoplastic
     using typename CoarseSolver<dim>::Masking;
     using typename CoarseSolver<dim>::Vector;
 
-    /// @p rows: the owned ones of @p level; @p rigid_body_modes: on its owned
-    /// entries, one after the other.
+    /// @p rows: the owned matrix rows of @p level; @p rigid_body_modes: one
+    /// after the other, each on the owned entries of @p level.
     AlgebraicCoarseSolver(const BlockRows<dim>      &rows,
                           const MultigridLevel<dim> &level,
                           const std::vector<double> &rigid_body_modes,

@@ -11,21 +11,21 @@
 
 namespace Viscoplastic
 {
-  /// Smoothed aggregation with the rigid body modes (ML): for any matrix, on
-  /// any mesh.
+  /// Preconditioner by smoothed aggregation with rigid body modes (Trilinos'
+  /// ML), for any matrix on any mesh.
   ///
-  /// It is built for the stick set of the first solve: its matrix has the rows
-  /// and columns of prescribed and blocked components cut off. While the set
-  /// moves on, it is kept and filtered by the present truncation, which costs
-  /// iterations; it is rebuilt when the iterations lost since the last set-up
-  /// would have paid for a new one. The count, not the clock, decides, so runs
-  /// are reproducible.
+  /// The hierarchy is built for the stick set of the first solve, from the
+  /// matrix without the rows and columns of prescribed and blocked components.
+  /// While the set changes, it is kept and the caller projects its results,
+  /// which costs iterations. It is rebuilt when the iterations lost since the
+  /// last set-up exceed the price of a new one. Iterations are counted instead
+  /// of seconds, so that runs are reproducible.
   class AlgebraicMultigrid : public Preconditioner
   {
   public:
-    /// @p excluded: owned degrees of freedom that are no unknowns;
-    /// @p rigid_body_modes: on owned entries, zero where excluded;
-    /// @p dim degrees of freedom a node.
+    /// @p excluded: owned degrees of freedom that are not unknowns;
+    /// @p rigid_body_modes: on owned entries, zero where excluded; @p dim
+    /// degrees of freedom a node.
     AlgebraicMultigrid(const DistributedMatrix       &matrix,
                        std::vector<bool>              excluded,
                        std::vector<DistributedVector> rigid_body_modes,
@@ -74,7 +74,7 @@ namespace Viscoplastic
     unsigned int
     price() const;
 
-    /// Set `damping' from the matrix.
+    /// Set `damping` from the diagonals of matrix and springs.
     void
     make_damping();
 
@@ -87,19 +87,19 @@ namespace Viscoplastic
 
     FaceTruncation truncation;
     bool           has_springs = false;
-    /// D of owned face entries, empty without springs: D^2 = diag(K + springs
-    /// known to M)/diag(K + springs), at most 1, tends to 0 for a point that
-    /// comes to rest, so that stiff new springs do not spoil a preconditioner
-    /// D M^{-1} D that does not know them.
+    /// The diagonal D on owned face entries of the preconditioner D M^{-1} D;
+    /// empty without springs. D^2 = diag(K + springs known to M)/diag(K +
+    /// springs), at most 1, tends to 0 for a point that comes to rest, so that
+    /// stiff springs that M does not know do no harm.
     Vector<double>            damping;
     mutable DistributedVector damped;
 
     std::unique_ptr<SmoothedAggregation> amg;
-    /// Of the matrix without truncation and springs, for vmult_whole().
+    /// For vmult_whole(): made without truncation and springs.
     mutable std::unique_ptr<SmoothedAggregation> whole;
     FaceTruncation                               built_for;
-    /// Iterations a decade right after a set-up, the best so far; iterations
-    /// lost against that since the last set-up.
+    /// The least number of iterations per decade of the residual right after a
+    /// set-up; iterations lost against that rate since the last set-up.
     double best_rate = 0., lost_iterations = 0.;
     bool   is_fresh = false;
   };

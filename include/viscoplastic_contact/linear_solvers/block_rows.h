@@ -11,8 +11,8 @@ namespace Viscoplastic
   using NodeBlock = Tensor<2, dim>;
 
 
-  /// The rows of a matrix that belong to some nodes, in compressed form;
-  /// columns are nodes by number, in ascending order.
+  /// Block rows of a matrix for some nodes, in compressed form; columns are
+  /// node numbers, in ascending order.
   template <int dim>
   struct BlockRows
   {
@@ -28,9 +28,10 @@ namespace Viscoplastic
   };
 
 
-  /// The owned rows of a matrix in nodal frames, in Cartesian components and
-  /// divided by @p unit, for the nodes of the last mesh of @p hierarchy. Rows
-  /// and columns of @p excluded degrees of freedom are zero. Collective.
+  /// Return the rows of @p nodes, owned ones of the last mesh of @p hierarchy,
+  /// of a matrix in nodal frames, in Cartesian components and divided by
+  /// @p unit. Rows and columns of @p excluded degrees of freedom are zero.
+  /// Collective.
   template <int dim>
   BlockRows<dim>
   cartesian_rows(const DistributedMatrix                &matrix,
@@ -40,9 +41,9 @@ namespace Viscoplastic
                  const double                            unit);
 
 
-  /// Interpolation from one mesh of a hierarchy to the next: for each node the
-  /// coarse nodes and weights. Rows of owned nodes come first, then those of
-  /// the ghosts that a matrix couples them with.
+  /// Interpolation from one mesh of a hierarchy to the next: for each fine node
+  /// the coarse nodes and weights. Rows of owned nodes come first, then those
+  /// of the ghosts in the columns of a matrix.
   struct Interpolation
   {
     std::vector<std::size_t>           begin{0};
@@ -56,11 +57,11 @@ namespace Viscoplastic
   };
 
 
-  /// P^T A P, the matrix of the same bilinear form on the coarser mesh, for the
-  /// owned rows.
+  /// Return the owned rows of P^T A P, the matrix of the bilinear form of @p A
+  /// on the coarser mesh.
   ///
-  /// @p nodes: the numbers of the owned fine nodes, ascending, and of the
-  /// ghosts, ascending, among the columns of @p A; @p coarse_nodes: the owned
+  /// @p owned_nodes: the owned fine nodes, ascending; @p ghosts: the other
+  /// nodes among the columns of @p A, ascending; @p coarse_nodes: the owned
   /// coarse nodes, ascending; @p begins: the first node of each rank, and the
   /// end. Collective.
   template <int dim>

@@ -22,19 +22,19 @@ namespace Viscoplastic
     virtual bool
     is_exact() const = 0;
 
-    /// Take the masks of owned nodes for one kind of cycle. Where this would
-    /// cost a set-up, @p may_rebuild allows it. Returns whether one was made.
+    /// Set the masks of owned nodes for one kind of cycle. Inexact solvers
+    /// replace a set-up only if @p may_rebuild. Returns whether one was made.
     virtual bool
     set_masks(const Masking            masking,
               const std::vector<Mask> &masks,
               const bool               may_rebuild) = 0;
 
-    /// Make the next set_masks() of this kind set up anew.
+    /// Discard the set-up, so that the next set_masks() makes a new one.
     virtual void
     forget(const Masking masking) = 0;
 
-    /// x := M^{-1} b, where @p b is zero on what is not free; entries of @p x
-    /// there mean nothing.
+    /// Compute x := M^{-1} b, where @p b is zero in directions that are not
+    /// free; the components of @p x in these are arbitrary.
     virtual void
     solve(const Masking masking, Vector &x, const Vector &b) const = 0;
   };

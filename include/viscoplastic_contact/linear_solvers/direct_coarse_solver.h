@@ -12,8 +12,8 @@
 
 namespace Viscoplastic
 {
-  /// A direct solver (UMFPACK) for a small first level. Each rank has all of
-  /// it.
+  /// A direct solver (UMFPACK) for a small coarsest level. Each rank factorizes
+  /// the whole matrix.
   template <int dim>
   class DirectCoarseSolver : public CoarseSolver<dim>
   {
@@ -22,7 +22,7 @@ namespace Viscoplastic
     using typename CoarseSolver<dim>::Masking;
     using typename CoarseSolver<dim>::Vector;
 
-    /// @p rows: the owned ones of @p level.
+    /// @p rows: the owned matrix rows of @p level.
     DirectCoarseSolver(const BlockRows<dim>      &rows,
                        const MultigridLevel<dim> &level,
                        const MPI_Comm             communicator);

@@ -19,7 +19,7 @@ namespace Viscoplastic
     FaceRestriction() = default;
 
     /// @p dofs: the global degree of freedom of each entry of a face vector;
-    /// @p owned: all of this rank. Collective.
+    /// @p owned: the degrees of freedom of this rank. Collective.
     FaceRestriction(ContactLayout                        face,
                     std::vector<types::global_dof_index> dofs,
                     const IndexSet                      &owned);
@@ -30,7 +30,7 @@ namespace Viscoplastic
       return contact_layout;
     }
 
-    /// Add a piece to the foundation of an obstacle, see NormalCompliance.
+    /// Add a foundation piece to an obstacle, see NormalCompliance::add().
     void
     add_compliance(const unsigned int point,
                    const double       factor,
@@ -39,14 +39,14 @@ namespace Viscoplastic
       contact_layout.points[point].compliance.add(factor, law);
     }
 
-    /// The entries of face vectors on all ranks.
+    /// The number of entries of face vectors on all ranks together.
     types::global_dof_index
     n_global_dofs() const
     {
       return numbers.size();
     }
 
-    /// The numbers of this rank's entries among those of all ranks: a range.
+    /// The global numbers of this rank's entries, a contiguous range.
     const IndexSet &
     global_numbers() const
     {
@@ -91,7 +91,7 @@ namespace Viscoplastic
         apply(truncation, &FaceTruncation::project, v);
     }
 
-    /// The tilts of a truncation, as FaceTruncation applies them.
+    /// Apply the function of FaceTruncation of the same name, if it has tilts.
     void
     tilt_equations(const FaceTruncation &truncation, DistributedVector &v) const
     {

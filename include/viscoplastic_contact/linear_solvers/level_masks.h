@@ -21,8 +21,8 @@ namespace Viscoplastic
   }
 
 
-  /// A on the range of a projector, and a multiple of the identity, of the size
-  /// of A, on its kernel.
+  /// Return P A P + c (I - P) for a projector P, which is regular if A is
+  /// positive definite; c has the size of A.
   template <int dim>
   Tensor<2, dim>
   on_range(const Tensor<2, dim> &A, const Tensor<2, dim> &projector)
@@ -32,14 +32,14 @@ namespace Viscoplastic
   }
 
 
-  /// What the levels of a multigrid cycle know of excluded degrees of freedom
-  /// and of a truncation on the face: at the nodes concerned a projector onto
-  /// what is free, and springs.
+  /// The masks by which levels of a multigrid cycle respect excluded degrees of
+  /// freedom and a truncation of the face: at each node concerned a projector
+  /// onto the free directions, and springs.
   ///
-  /// Matrices know nothing of it. Residuals and corrections are zero in the
-  /// directions that are cut off, and a coarse node sticks if at least 40 % of
-  /// the weight of the face nodes around it does. So another truncation costs
-  /// nothing but the inverse diagonal blocks of face nodes.
+  /// Level matrices do not depend on masks. Instead, residuals and corrections
+  /// are projected, and a coarse node sticks if at least 40 % of the weight of
+  /// the face nodes around it does. So a new truncation costs nothing but
+  /// inverse diagonal blocks of face nodes.
   template <int dim>
   class LevelMasks
   {
@@ -54,8 +54,8 @@ namespace Viscoplastic
       truncated
     };
 
-    /// On the first level, where nodes are numbered over all ranks: the
-    /// projector onto what is free at a node, and springs there.
+    /// The mask of a node on the first (coarsest) level: the projector onto its
+    /// free directions, and its springs. Nodes are numbered over all ranks.
     struct Mask
     {
       Node           node;
@@ -76,19 +76,19 @@ namespace Viscoplastic
       }
     };
 
-    /// @p excluded: owned degrees of freedom that are no unknowns.
+    /// @p excluded: owned degrees of freedom that are not unknowns.
     LevelMasks(const std::vector<bool> &excluded,
                const NodeHierarchy     &hierarchy,
                const FaceRestriction   &restriction);
 
-    /// Take levels with new matrix values, coarsest first, and set the inverse
-    /// diagonal blocks of their nodes off the face. Discards all masks.
+    /// Use these levels with new matrix values, coarsest first, and set the
+    /// inverse diagonal blocks of nodes off the face. Discards all masks.
     void
     set_levels(const std::vector<MultigridLevel<dim> *> &levels);
 
-    /// Make the masks of all levels for a truncation, or without one those of
-    /// the excluded degrees of freedom alone. @p unit: the stiffness in which
-    /// levels are measured. Returns what they are on the first level.
+    /// Make the masks of all levels for @p truncation, or of the excluded
+    /// degrees of freedom alone if it is null. @p unit: the stiffness by which
+    /// level matrices are divided. Returns the masks on the first level.
     /// Collective.
     std::vector<Mask>
     set(const Masking         masking,
@@ -105,7 +105,7 @@ namespace Viscoplastic
       return *used;
     }
 
-    /// Project a vector of a level onto the unknowns of the present cycle.
+    /// Project a vector of a level onto the free directions of masks in use.
     void
     project(const unsigned int level, Vector &v) const;
 
@@ -115,8 +115,8 @@ namespace Viscoplastic
     {
       Node         node;
       unsigned int index; // among the nodes of the face
-      /// Projector onto the directions that are unknowns, and the directions of
-      /// the entries of face vectors.
+      /// The projector onto the directions that are unknowns, and the direction
+      /// of each of the node's entries in face vectors.
       Tensor<2, dim>                  unknown;
       std::array<Tensor<1, dim>, dim> direction;
       unsigned int                    n_dofs;
@@ -170,18 +170,18 @@ namespace Viscoplastic
     Tensor<1, dim>
     direction(const Node node, const unsigned int component) const;
 
-    /// The treatments of face nodes on the finest mesh, ...
+    /// The treatments of face nodes on the finest mesh.
     std::vector<Treatment>
     treatments(const FaceTruncation *truncation, const double unit) const;
 
-    /// ... their restriction to the level below @p level, ...
+    /// The restriction of treatments on @p level to the next coarser level.
     std::vector<Treatment>
     coarsen(const std::vector<Treatment> &fine,
             const FaceTruncation         &truncation,
             const bool                    has_springs,
             const unsigned int            level) const;
 
-    /// ... and the masks that they make on a level.
+    /// The masks of the face nodes of a level for given treatments.
     Entries
     make_entries(const std::vector<Treatment> &treatments,
                  const Level                  &level) const;

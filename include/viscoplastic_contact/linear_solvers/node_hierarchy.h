@@ -19,9 +19,8 @@ namespace Viscoplastic
   /// l, and hanging nodes hang in all meshes that have them, so that the spaces
   /// are nested, too.
   ///
-  /// A node is known by its number in the last mesh on all levels, its first
-  /// degree of freedom over their number at a node; the rank that owns it there
-  /// owns it everywhere.
+  /// On all levels, a node has its number in the last mesh, which is its first
+  /// degree of freedom divided by the dimension, and its owner there.
   struct NodeHierarchy
   {
     using Node = types::global_dof_index;
@@ -31,17 +30,17 @@ namespace Viscoplastic
     /// The range of nodes that this rank owns, [begin, end).
     Node begin = 0, end = 0;
 
-    /// The end of the nodes of all ranks: degrees of freedom of nodes beyond
-    /// are no displacements of the mesh.
+    /// The end of the node numbers of all ranks. Degrees of freedom beyond it
+    /// are not displacements of mesh nodes.
     Node end_of_mesh = numbers::invalid_dof_index;
 
-    /// The first mesh that has each owned node; invalid_unsigned_int for
-    /// hanging nodes, which are no unknowns of any mesh.
+    /// For each owned node the first mesh that has it; invalid_unsigned_int for
+    /// hanging nodes, which are not unknowns of any mesh.
     std::vector<unsigned int> first_level;
 
-    /// A displacement of the mesh before is, at an owned node that is new, the
-    /// sum of the values of its parents with these weights (in Cartesian
-    /// components). Compressed rows, empty for nodes of the first mesh.
+    /// A coarse node and its weight in the interpolation, in Cartesian
+    /// components, to an owned node that the next mesh adds. Rows of parents
+    /// are compressed, and empty for nodes of the first mesh.
     struct Parent
     {
       Node   node;
@@ -57,13 +56,13 @@ namespace Viscoplastic
     std::vector<std::size_t> row_begin;
     std::vector<Parent>      parents;
 
-    /// The directions, as columns, of owned nodes and ghosts whose frame is not
-    /// Cartesian.
+    /// The frames of owned and ghost nodes whose frame is not Cartesian, with
+    /// directions as columns.
     std::map<Node, Tensor<2, 3>> frames;
 
-    /// Whether bodies touch; and of owned nodes there the nodes opposite, with
-    /// their weights: the unknowns of these nodes are displacements relative to
-    /// this sum.
+    /// Whether there are interfaces between bodies, and the nodes opposite
+    /// owned nodes there, with weights: the unknowns of an owned one are its
+    /// displacement minus the weighted sum of displacements opposite.
     bool                                has_interfaces = false;
     std::map<Node, std::vector<Parent>> opposite;
   };

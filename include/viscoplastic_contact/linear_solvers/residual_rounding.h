@@ -7,11 +7,11 @@
 
 namespace Viscoplastic
 {
-  /// The norm of what rounding makes of load - matrix u, whose row i is off by
-  /// about one unit of rounding of |load_i| + sum_j |matrix_ij| |u_j|: the root
-  /// mean square of the norms of a few such errors of random signs
-  /// (Hutchinson's estimate of a trace). @p squared_norm may change the vector.
-  /// Collective.
+  /// Estimate the norm of the rounding error of load - matrix u, whose row i is
+  /// taken to be off by one unit of rounding of |load_i| + sum_j |matrix_ij|
+  /// |u_j|: the root mean square of the norms of a few such errors of random
+  /// signs (Hutchinson's estimate of a trace). @p squared_norm may change its
+  /// argument. Collective.
   double
   rounding_of_residual(
     const DistributedMatrix                          &matrix,

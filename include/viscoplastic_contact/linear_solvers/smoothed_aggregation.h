@@ -18,7 +18,7 @@ namespace Viscoplastic
   /// A cycle of smoothed aggregation (Vanek, Mandel and Brezina, Computing 56,
   /// 1996; Trilinos' ML) for a symmetric positive definite matrix of
   /// elasticity: Chebyshev smoothers, a direct solver on the last level. The
-  /// same matrix gives the same cycle, however many there were before.
+  /// same matrix always gives the same cycle, whatever was set up earlier.
   class SmoothedAggregation
   {
   public:
@@ -35,7 +35,7 @@ namespace Viscoplastic
     vmult(DistributedVector &y, const DistributedVector &x) const;
 
   private:
-    // What ML refers to.
+    // ML keeps references to these two.
     std::unique_ptr<TrilinosWrappers::SparseMatrix> matrix;
     std::vector<double>                             near_null_space;
     /// The unit of stiffness by which the matrix is divided.

@@ -34,8 +34,8 @@ namespace Viscoplastic
     /// The least number of solves with one matrix, and the number of solves in
     /// a time step.
     unsigned int n_solves = 1, solves_per_step = 1;
-    /// Degrees of freedom in all and on the contact face; also for cost models
-    /// beyond dealii::types::global_dof_index.
+    /// Degrees of freedom in total and on the contact face; 64 bits, since cost
+    /// models go beyond dealii::types::global_dof_index.
     std::uint64_t n_dofs = 0, n_face_dofs = 0;
     bool          has_friction = false;
     /// The number of unknowns of the mesh that the present one is refined from;
@@ -45,7 +45,7 @@ namespace Viscoplastic
 
 
   /// Whether the mesh is refined from a small one, on which a direct solver
-  /// costs little against a multigrid cycle on the present one.
+  /// costs little compared with a multigrid cycle on the present one.
   bool
   has_small_first_mesh(const SolverDemand &demand);
 
@@ -56,7 +56,7 @@ namespace Viscoplastic
   choose_bulk_solver(const SolverDemand &demand);
 
 
-  /// Seconds of one set-up, with all that a new mesh brings, and of one step.
+  /// Seconds of one set-up, with all other work on a new mesh, and of a step.
   struct SolverCost
   {
     double set_up, step;
@@ -71,16 +71,16 @@ namespace Viscoplastic
 
 
   /// The expected seconds of @p n_steps steps on @p n_ranks cores: those of one
-  /// rank shared out, and what the ranks tell each other (doc/cluster.md).
+  /// rank divided by @p n_ranks, plus communication (doc/cluster.md).
   double
   expected_seconds(SolverDemand       demand,
                    const double       n_steps,
                    const unsigned int n_ranks);
 
 
-  /// The power of two, at most @p n_most, with the least product of these
-  /// seconds and the number of ranks to the power @p worth: a number is not
-  /// taken for another one if it saves less than 1 - 2^-worth a doubling.
+  /// Return the power of two n, at most @p n_most, for which expected_seconds()
+  /// times n^worth is least: twice the ranks have to save at least the part 1 -
+  /// 2^-worth of the time.
   unsigned int
   best_ranks(const SolverDemand &demand,
              const double        n_steps,
@@ -88,8 +88,8 @@ namespace Viscoplastic
              const double        worth = 0.);
 
 
-  /// Bytes of the matrix a degree of freedom: with the nodes beside a node that
-  /// are not before it, and itself, it has 5 or 14 blocks.
+  /// Bytes of the matrix per degree of freedom: a node has 5 (2D) or 14 (3D)
+  /// blocks on and above the diagonal, each with a column number of 4 bytes.
   constexpr double
   matrix_bytes(const unsigned int dim)
   {

@@ -27,10 +27,10 @@ namespace Viscoplastic
         if (solve.is_exact ||
             std::sqrt(std::max(0., curvature)) <= enough * solve.energy_norm())
           break;
-        // The forces of springs have changed. (Not known with a tilt: in a
-        // transposed system springs do not act on w.)
-        if (!truncation.tilt.empty())
-          continue;
+        // The forces of springs have changed. With a tilt the change is not
+        // known, since in a transposed system springs do not act on w.
+        if (face.any(!truncation.tilt.empty()) && truncation.has_springs(face))
+          break;
         for (unsigned int node = 0; node < face.n_nodes(); ++node)
           face.set_node_values(face.node_values(force, node) +
                                  truncation.spring[node] *

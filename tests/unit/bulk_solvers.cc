@@ -428,6 +428,43 @@ namespace
 
 
 
+  // However often a correction is corrected, springs keep their forces.
+  TYPED_TEST(BulkSolvers, TruncatedSolve)
+  {
+    constexpr int            dim = TypeParam::value;
+    const BulkScenario<dim>  scenario(1, 1, true);
+    const Dense              dense(scenario);
+    const ContactLayout     &face       = scenario.face->layout();
+    FaceTruncation           truncation = some_truncation(face);
+    const FullMatrix<double> projector =
+                               dense.from_blocks(truncation.projector),
+                             springs = dense.from_blocks(truncation.spring);
+    Vector<double> expected =
+      dense.solve(dense.residual(dense.start), projector, springs);
+    expected += dense.start;
+    for (const auto &solver : scenario.solvers())
+      for (const bool is_tilted : {false, true})
+        {
+          SCOPED_TRACE(solver->name());
+          truncation.tilt.clear();
+          if (is_tilted)
+            truncation.tilt.assign(face.n_nodes(),
+                                   Tensor<2, 3>(unit_symmetric_tensor<3>()));
+          DistributedVector u(scenario.start);
+          solve_truncated(*solver->begin(scenario.load, u),
+                          face,
+                          truncation,
+                          /* is_kept = */ true,
+                          Vector<double>(face.n_dofs()),
+                          /* reduction = */ 1e-10,
+                          /* enough = */ 0.);
+          EXPECT_LT(distance(dense.gather(u), expected),
+                    1e-7 * expected.l2_norm());
+        }
+  }
+
+
+
   TYPED_TEST(BulkSolvers, NodesRelaxedAtOnceDoNotCouple)
   {
     constexpr int           dim = TypeParam::value;

@@ -266,8 +266,8 @@ namespace Viscoplastic
             beside = std::max(
               beside,
               std::abs((node.held * at(density, vertex))[quantity.component]));
-            // Where both bodies are held, slip is what a mean over the face
-            // makes of their strains.
+            // If two bodies are held, slip of less than half of what u varies
+            // by on the face is zero: the opposite u is a mean.
             if (condition.against)
               for (const DistributedVector *const field :
                    {&state.u, &std::as_const(u)})

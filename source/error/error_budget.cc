@@ -52,7 +52,7 @@ namespace Viscoplastic
                      const bool        has_time_error) const
   {
     const double all = tolerance * size;
-    // Time steps have not made all of their error yet.
+    // The error of time steps still grows: reserve its whole share.
     const double time = has_time_error ? std::max(errors.time + errors.friction,
                                                   time_share * all) :
                                          0.;

@@ -10,7 +10,7 @@ namespace Viscoplastic
 {
   namespace
   {
-    /// Largest values met so far: the scales of what counts as zero.
+    /// The largest values met so far, to which tolerances are relative.
     struct Scales
     {
       double displacement = 0., velocity = 0., stress = 0.;
@@ -18,7 +18,7 @@ namespace Viscoplastic
 
 
 
-    /// The velocity of the exact solution relative to the foundation.
+    /// The tangential velocity of the exact solution minus the foundation's.
     template <int dim>
     Tensor<1, dim>
     slip_rate(const BoundaryCondition<dim> &condition,
@@ -40,8 +40,8 @@ namespace Viscoplastic
 
 
 
-    /// What the solution violates at a point of a boundary piece; empty if
-    /// nothing.
+    /// Describe what the solution violates at a point of a boundary piece;
+    /// empty if nothing.
     template <int dim>
     std::string
     violation(const BoundaryCondition<dim> &condition,
@@ -51,7 +51,7 @@ namespace Viscoplastic
               const double                  k,
               Scales                       &scales)
     {
-      // Differences are right up to 1e-8 of the scales.
+      // Difference quotients are accurate to 1e-8 of the scales.
       constexpr double     small = 1e-6;
       const Tensor<1, dim> u     = solution.displacement(x, t);
       scales.displacement        = std::max(scales.displacement, u.norm());
@@ -106,7 +106,7 @@ namespace Viscoplastic
       if (force.norm() > bound + tolerance)
         text << "has the friction bound " << bound
              << ", but the tangential stress is " << force;
-      // Where the body hardly moves, its direction is lost in differences.
+      // The direction of very small slip is lost in difference quotients.
       else if (slip.norm() > 1e-4 * scales.velocity &&
                (force + bound * slip / slip.norm()).norm() >
                  1e-3 * bound + tolerance)

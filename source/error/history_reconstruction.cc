@@ -27,19 +27,19 @@ namespace Viscoplastic
 
 
 
-    /// The owned cells, the ghosts after them, and who is whose neighbor.
+    /// The owned cells, followed by ghosts, and the neighbors of owned ones.
     template <int dim>
     class Neighborhood
     {
     public:
       explicit Neighborhood(const StressSpace<dim> &stress_space);
 
-      /// The means of a field.
+      /// The cell means of a field in owned cells and ghosts.
       std::vector<Stress>
       means(const IrreversibleStress &field) const;
 
-      /// By what the slopes that the means of neighbors suggest differ from
-      /// those of the samples, in owned cells.
+      /// The slopes fitted to the means of neighbors minus those of the
+      /// samples, in owned cells.
       std::vector<Slopes<dim>>
       corrections(const IrreversibleStress  &field,
                   const std::vector<Stress> &means) const;
@@ -49,7 +49,7 @@ namespace Viscoplastic
       sampled_slopes(const std::size_t         c,
                      const IrreversibleStress &field) const;
 
-      /// Where the samples of an owned cell are, from their mean.
+      /// The positions of an owned cell's samples relative to its center.
       std::vector<Tensor<1, dim>>
       sample_places(const std::size_t c) const;
 
@@ -84,8 +84,8 @@ namespace Viscoplastic
         add(cell);
       for (const auto &cell : ghost_cells(dof_handler))
         add(cell);
-      // Those that means are at, which in cells that are no parallelograms the
-      // mean of the vertices is not: linear fields stay as they are.
+      // Cell means belong to centers of gravity, which are not the mean of the
+      // vertices unless cells are parallelograms: linear fields are reproduced.
       std::vector<Stress> places(neighbors.size());
       for (std::size_t c = 0; c < places.size(); ++c)
         for (unsigned int s = 0; s < stress_space.n_samples; ++s)
@@ -203,10 +203,10 @@ namespace Viscoplastic
     Neighborhood<dim>::corrections(const IrreversibleStress  &field,
                                    const std::vector<Stress> &means) const
     {
-      // Least squares for the slopes' corrections, A c = b with A the sum of
-      // w w over the unit vectors w to the neighbors. Where there are none to
-      // speak of, as along the radius in a ring of one layer, a direction
-      // keeps its slope: (A^2 + threshold^2) c = A b.
+      // Least squares for the slopes' corrections c are A c = b with A the sum
+      // of w w over the unit vectors w to neighbors. Regularization keeps the
+      // slope in directions without neighbors, such as the radius in a ring of
+      // one layer: (A^2 + threshold^2) c = A b.
       constexpr double         threshold = 0.1;
       std::vector<Slopes<dim>> result(neighbors.size());
       for (std::size_t c = 0; c < result.size(); ++c)
@@ -242,7 +242,7 @@ namespace Viscoplastic
                       const IrreversibleStress &z,
                       const IrreversibleStress &stress)
   {
-    // Of cell means, the values of children follow.
+    // With cell means, return values at the centers of the children.
     const bool         of_children = stress_space.n_samples == 1;
     const unsigned int n           = 1u << dim;
     const auto         values      = [&](const IrreversibleStress &field) {
@@ -263,7 +263,7 @@ namespace Viscoplastic
     const auto of_z      = near.corrections(z, mean_z),
                of_stress = near.corrections(stress, mean_stress);
 
-    // The new slopes, of ghosts, too.
+    // The new slopes of z in owned cells and ghosts.
     std::vector<Slopes<dim>> slopes(near.centers.size());
     for (unsigned int d = 0; d < dim; ++d)
       {
@@ -279,7 +279,7 @@ namespace Viscoplastic
       {
         const auto      &cell      = stress_space.space.cells[c];
         const Stiffness &stiffness = stress_space.moduli(c);
-        // Second moments of a cell are a third of those of its vertices.
+        // Second moments of a cell are a third of those of equal vertex masses.
         const double weight =
           stress_space.volume(c) / (3. * cell->n_vertices());
         double of_samples = 0., square = 0.;
@@ -289,7 +289,8 @@ namespace Viscoplastic
             of_samples += weight * stiffness.complementary_square(of_z[c] * x);
             square += weight * x.norm_square();
           }
-        // Where two slopes miss each other, each is taken to be half of it.
+        // The error of new slopes is what the mean of the slopes of two
+        // neighbors leaves of the difference of their cell means.
         double of_slopes = 0.;
         for (const unsigned int neighbor : near.neighbors[c])
           {
@@ -306,8 +307,8 @@ namespace Viscoplastic
         if (of_slopes >= of_samples)
           continue;
         error = of_slopes;
-        // Where creep prevails, the stress has relaxed to what lets strains of
-        // this mesh flow, and another one would have to do so again.
+        // Where creep prevails, the stress has relaxed to one that makes
+        // strains of this mesh flow, and a changed one would relax again.
         std::vector<Tensor<1, dim>> places;
         if (of_children)
           for (const unsigned int v : cell->vertex_indices())

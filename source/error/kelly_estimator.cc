@@ -14,8 +14,8 @@ namespace Viscoplastic
   {
     const Triangulation<dim> &triangulation =
       space.dof_handler.get_triangulation();
-    // Estimates come with single precision, whose range the units of a scene
-    // must not meet: scale to 1 by a power of two, which changes no digit.
+    // Units of a scene may exceed the range of KellyErrorEstimator's single
+    // precision: scale u to about 1 by a power of two, which is exact.
     double size = 0.;
     for (std::size_t i = 0; i < space.relevant.n_elements(); ++i)
       size = std::max(size, std::abs(ghosted_u.begin()[i]));

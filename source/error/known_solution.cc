@@ -11,7 +11,7 @@ namespace Viscoplastic
 {
   namespace
   {
-    /// The density of the multipliers of a state; empty without contact points.
+    /// The density of friction multipliers; empty without contact points.
     template <int dim>
     std::optional<DistributedVector>
     multiplier_density(const Discretization<dim> &discretization,

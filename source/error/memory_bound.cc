@@ -7,8 +7,8 @@ namespace Viscoplastic
 {
   namespace
   {
-    /// Of the program on each rank, most of it for its libraries; of mesh,
-    /// spaces and states by unknown. Measured, see doc/solvers.md.
+    /// Memory of the program on each rank, mostly of its libraries, and of
+    /// mesh, spaces and states per unknown. Measured, see doc/solvers.md.
     constexpr double bytes_of_rank = 0.19e9, bytes_of_unknown = 700.;
   } // namespace
 
@@ -30,8 +30,8 @@ namespace Viscoplastic
                expected_memory(choose_bulk_solver(finer), finer) <=
              bytes;
     };
-    // A solver that takes over may need less again: the first one that does not
-    // fit counts.
+    // The demand may drop where another solver takes over; the search stops at
+    // the first size that does not fit.
     double factor = 1. / n_cells;
     while (fits(1.05 * factor) &&
            1.05 * factor * n_cells < std::numeric_limits<int>::max())

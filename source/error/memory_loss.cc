@@ -17,8 +17,8 @@ namespace Viscoplastic
 
 
 
-    /// The families of owned cells that are marked, each of which has its
-    /// children on one rank.
+    /// The families of owned cells that are marked for coarsening, with their
+    /// losses. All children of a family are on one rank.
     template <int dim>
     std::vector<Family<dim>>
     marked_families(
@@ -46,8 +46,8 @@ namespace Viscoplastic
             is_gone &= child->is_active() && child->coarsen_flag_set();
           if (!is_gone)
             continue;
-          // W_r z_r = sum over children and samples s of w_s P_sr z_s, as
-          // StateTransfer has it.
+          // The projection of StateTransfer: W_r z_r is the sum of w_s P_sr z_s
+          // over the samples s of all children.
           coarse.assign(n, SymmetricTensor<2, 3>());
           weights.assign(n, 0.);
           const auto for_each_sample = [&](const auto &action) {
@@ -96,7 +96,7 @@ namespace Viscoplastic
 
 
 
-    /// A rank without cells has no z in any scene.
+    /// Whether any rank has z; a rank without cells never does.
     bool
     has_memory(const IrreversibleStress &z, const MPI_Comm communicator)
     {

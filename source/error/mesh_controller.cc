@@ -94,12 +94,12 @@ namespace Viscoplastic
   bool
   MeshController<dim>::is_in_vain(const EvaluatedState<dim> &end)
   {
-    // Quantities have signs: theirs may grow by chance.
+    // The error of a quantity has a sign and may grow by chance.
     if (scene.quantity)
       return false;
-    // Where finer meshes leave more than 0.95 of an error three times in turn,
-    // it is not theirs, and cells would have no end: the step accepts it, and
-    // the next ones leave it alone until it has grown by half.
+    // If finer meshes leave more than 0.95 of an error three times in turn,
+    // meshes do not cause it, and refinement would not end: the step accepts
+    // the error, and later steps refine only once it has grown by half.
     constexpr double       hardly = 0.95, growth = 1.5;
     constexpr unsigned int enough = 3;
     const double           error  = budget->errors(end.errors).of_meshes();
@@ -133,9 +133,9 @@ namespace Viscoplastic
   MeshController<dim>::limits(const Discretization<dim> &discretization) const
   {
     RefinementParameters limits = wanted;
-    // What a coarse mesh does to creep at the beginning of a load, when any
-    // error is small against what comes, stays: no mesh of a run to a tolerance
-    // is coarser than the first one.
+    // At the beginning of a load, errors are small against the later solution,
+    // but those of creep on a coarse mesh stay in z: no mesh of a run to a
+    // tolerance is coarser than the first one.
     if (budget != nullptr && scene.has_viscosity())
       limits.minimal_level =
         std::max(limits.minimal_level,
@@ -155,7 +155,7 @@ namespace Viscoplastic
     const Discretization<dim> &discretization,
     const EvaluatedState<dim> &accepted) const
   {
-    // Nor does a quantity that no residual changes.
+    // The estimate of a quantity that no residual changes is rounding, too.
     if (scene.quantity)
       {
         const QuantityEstimate &quantity = accepted.errors.quantity;
@@ -173,7 +173,7 @@ namespace Viscoplastic
       10. * std::max(1e-10, scene.parameters.solver.strict_tolerance());
     if (wanted.strategy == RefinementStrategy::kelly)
       {
-        // Jumps of strains, relative to the strains as the error to the norm.
+        // Compare jumps with strains as errors with the energy norm.
         const double jumps =
           total_estimate(accepted.space_estimate.squared_indicators,
                          triangulation);
@@ -202,9 +202,9 @@ namespace Viscoplastic
       budget->space(budget->errors(errors), size, scene.has_time_error());
     if (!scene.quantity)
       {
-        // What the mesh does to a strain that is elastic, a finer one mends.
-        // What it does to creep stays, and counts against what there is of it;
-        // but the little of the beginning is not worth a mesh for itself.
+        // A finer mesh removes errors of elastic strains, but not those of
+        // creep, which count relative to the solution so far; at least to a
+        // third of its largest size, as little creep is not worth a mesh.
         const double creep =
           so_far > 0. ? std::min(1., errors.creep_path / so_far) : 0.;
         constexpr double least = 1. / 3.;
@@ -214,11 +214,11 @@ namespace Viscoplastic
       }
     const QuantityEstimate &quantity = errors.quantity;
     if (quantity.unsigned_space + quantity.of_boundary ==
-        0.) // nor does friction that cannot change
+        0.) // no information about the mesh
       return 1.;
-    // Quantities behave like squares of the energy norm. Where contributions
-    // happen to cancel, none of them may become larger. What is settled stays
-    // as it is on any mesh; but of sums, it counts where it adds.
+    // Errors of quantities behave like squares of the energy norm. As
+    // contributions of cells may cancel by chance, their sizes count, too. The
+    // settled part stays on any mesh; for other than sums it counts if it adds.
     constexpr double safety = QuantityEstimator<dim>::safety;
     const double     now = quantity.space_correction - quantity.settled_space;
     const double
@@ -235,7 +235,7 @@ namespace Viscoplastic
       ratio = std::sqrt(
         std::max(of_mesh, std::min(quantity.unsigned_space, 0.9 * open)) /
         open);
-    // A face that hardly slips for a while will slip again.
+    // A sum over steps grows again when a face that rests slips again.
     return scene.quantity->is_sum() ? std::max(1., ratio) : ratio;
   }
 
@@ -248,8 +248,8 @@ namespace Viscoplastic
     const EvaluatedState<dim> &accepted,
     const double               so_far)
   {
-    // What creeps or slips remembers each mesh, which the estimate of a
-    // quantity does not see: its mesh never becomes coarser.
+    // Creep and slip keep errors of earlier meshes, which the estimate of a
+    // quantity does not contain: its mesh never becomes coarser.
     if (scene.quantity)
       return nullptr;
     return [this, &discretization, &accepted, so_far] {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <viscoplastic_contact/error/recovery_estimator.h>
 
-// What means around nodes miss at singular points.
+// The errors at singular points that recovery by means around nodes misses.
 
 namespace Viscoplastic
 {
@@ -30,9 +30,9 @@ namespace Viscoplastic
     const Strains       &means,
     std::vector<double> &squares) const
   {
-    // Strains that grow less than r^(-1/4) are recovered well enough.
+    // Strains that grow more slowly than r^(-1/4) are recovered well enough.
     const double     least_growth = std::sqrt(2.);
-    constexpr double nearly       = 1. - 1e-6; // what is equal but for rounding
+    constexpr double nearly       = 1. - 1e-6; // equal but for rounding
     const auto       node         = [this](NodalVector       &field,
                              const unsigned int c,
                              const unsigned int v,
@@ -54,9 +54,9 @@ namespace Viscoplastic
     sums.compress(VectorOperation::add);
     sums.update_ghost_values();
 
-    // A point is singular if the strain of the cell with the largest one there
-    // has grown towards it, not towards another of its vertices, and not as it
-    // does in bending or around holes.
+    // A vertex is singular if, in the adjacent cell of the largest energy
+    // density, strains grow most toward this vertex, and not as in bending or
+    // around holes, see is_curved().
     maxima = 0.;
     for (const unsigned int c : part.cells)
       {

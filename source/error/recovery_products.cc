@@ -71,8 +71,8 @@ namespace Viscoplastic
     AssertDimension(dual.strain.size(),
                     law.remainder ? nodes.size() * n_points : 0);
 
-    // A strain in the place of the volume that z keeps.
-    SymmetricTensor<2, 3> unit; // of the components there are
+    // The volumetric strain at which the elastic pressure cancels that of z.
+    SymmetricTensor<2, 3> unit; // in the components that strains have
     for (const unsigned int i : components)
       if (i < 3)
         unit.access_raw_entry(i) = 1.;
@@ -126,7 +126,8 @@ namespace Viscoplastic
                   e[q] += swelling(c, z[c * n_samples + s]);
                 const std::size_t i       = c * n_points + q;
                 double            product = e[q] * dual.stress[i];
-                // Of a shorter step; creep changes no volumes.
+                // The part in a step: the share of the deviator, but all of the
+                // volumetric part, since creep changes no volumes.
                 const SymmetricTensor<2, 3> of_step =
                   e[q] - (1. - law.share) * deviator(e[q]);
                 if (dilates)

@@ -14,19 +14,19 @@ namespace Viscoplastic
   {
     const FEValuesExtractors::Vector displacement(0);
 
-    /// The part of the way to the center of its cell that a point of a face is
-    /// taken inside, to be found in a cell of its body.
+    /// Points of a face are moved by this part of the way to the center of
+    /// their cell, to be found in a cell of their body.
     constexpr double inset = 1e-3;
 
-    /// Begins a file of samples, and says of which dimension and version.
+    /// The first number of a file of samples: its version and dimension.
     template <int dim>
     constexpr double magic_number = 7.28e9 + dim;
 
 
 
-    /// Bring each sample to the owned cell in which its @p place lies:
-    /// visit(cell, samples in it, their places on the unit cell). Returns
-    /// after all ranks have.
+    /// Send each sample to the rank that owns the cell around its @p place, and
+    /// call visit(cell, samples in it, their places on the unit cell).
+    /// Collective.
     template <int dim, typename Sample, typename Visitor>
     void
     visit_cells_of(const std::vector<Sample> &samples,
@@ -217,7 +217,7 @@ namespace Viscoplastic
 
 
 
-    /// What all ranks have, in the order of ranks, on rank 0.
+    /// Return the samples of all ranks, in the order of ranks, on rank 0.
     template <typename Sample>
     std::vector<Sample>
     gather(const std::vector<Sample> &samples, const MPI_Comm communicator)
@@ -230,7 +230,7 @@ namespace Viscoplastic
 
 
 
-    /// Throws on all ranks if rank 0 has something to complain about.
+    /// Throw on all ranks if rank 0 has a complaint. Collective.
     void
     agree(const std::string &complaint, const MPI_Comm communicator)
     {
@@ -367,7 +367,7 @@ namespace Viscoplastic
           }
         catch (const std::exception &)
           {
-            is_good = false; // said below
+            is_good = false; // reported below
           }
         if (!is_good)
           complaint = "'" + file + "' " +

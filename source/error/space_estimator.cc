@@ -42,7 +42,7 @@ namespace Viscoplastic
 
   namespace
   {
-    /// What ResidualEstimator asks of a state.
+    /// The fields of a state for ResidualEstimator.
     template <int dim>
     class FieldsOfState
     {

@@ -59,7 +59,7 @@ namespace Viscoplastic
         }
     field_transfer.prepare_for_coarsening_and_refinement(present);
 
-    // A rank without cells has empty fields in every scene.
+    // A field is present if any rank has it, as those without cells do not.
     const auto sampled = sample_fields(state);
     for (unsigned int f = 0; f < sampled.size(); ++f)
       if (Utilities::MPI::max(sampled[f]->empty() ? 0 : 1,
@@ -105,16 +105,17 @@ namespace Viscoplastic
   StateTransfer<dim>::pack(const CellIterator &cell,
                            const CellStatus    status) const
   {
-    // The samples, or of cell means that are refined the values of children,
-    // and their integral. For a cell to be coarsened, instead of the samples r
-    // of the parent to be, which divides by its own weights W_r:
+    // Pack the samples of each field (of cell means to be refined: values of
+    // the children) and their integral. For cells to be coarsened, pack
+    // weighted samples r of the parent, which unpack_samples() divides by its
+    // weights W_r:
     //
     //   W_r z_r = sum over samples s of all children: w_s P_sr z_s.
     //
     // Since sum_r P_sr = 1, sum_r W_r z_r is the integral over the children on
     // curved cells, too. On straight ones this is the L2 projection, as the
-    // Gauss rule integrates the parent's mass matrix (in 3D: on affine cells)
-    // exactly, diagonal as it is.
+    // Gauss rule integrates the parent's diagonal mass matrix exactly (in 3D on
+    // affine cells).
     const bool passes_on =
       status == Triangulation<dim>::CELL_REFINE && !for_children.z.empty();
     if (passes_on)
@@ -177,8 +178,8 @@ namespace Viscoplastic
   {
     if (status == Triangulation<dim>::CELL_REFINE)
       {
-        // On curved cells the children do not fill the parent; a shift
-        // makes up for it.
+        // On curved cells the children do not fill the parent; a constant shift
+        // conserves the integral.
         SymmetricTensor<2, 3> missing = values[n_values];
         double                volume  = 0.;
         for (unsigned int child = 0; child < cell->n_children(); ++child)
@@ -318,7 +319,7 @@ namespace Viscoplastic
           {
             SymmetricTensor<2, 3> &share = shares[c * n + s];
             share                        = deviator(stress[c * n + s] - share);
-            // What has not changed stays as it is to the last digit.
+            // Rounding does not count: z without a mismatch stays bit for bit.
             share *=
               of_z > 0. && share.norm() >
                              1e-12 * size / std::sqrt(stress_space.volume(c)) ?
@@ -364,8 +365,8 @@ namespace Viscoplastic
               point.is_obstacle)
             {
               const double force = std::max(0., carried_over[p][0]);
-              // The pressure is known better than the penetration, which at new
-              // nodes is that of an interpolant; at corners it is all there is.
+              // The transferred pressure is more accurate than a penetration
+              // interpolated to a new node; corners have only the latter.
               if (point.gives_way() && layout.first_point[point.node + 1] -
                                            layout.first_obstacle(point.node) >
                                          1)
@@ -396,7 +397,8 @@ namespace Viscoplastic
           }
         if (size > bound)
           multiplier *= bound / size;
-        // A bound of the slip rate is that of the next step.
+        // Bounds that depend on slip rates are not those of the last step, so
+        // that multipliers below them do not imply sticking.
         contact.sticks[p] = (rates.empty() && size < (1. - 1e-6) * bound) ||
                             stable_norm(slip_rates[p]) <= 1e-12 * max_speed;
       }

@@ -8,7 +8,7 @@ namespace Viscoplastic
 {
   namespace
   {
-    /// Deviators of unit norm along the axes.
+    /// Diagonal deviators of unit norm, one for each pair of axes.
     template <int dim>
     std::vector<SymmetricTensor<2, 3>>
     unit_deviators()
@@ -87,7 +87,7 @@ namespace Viscoplastic
             }
           if (!flows || squares[c] == 0.)
             continue;
-          // Tangents cost more than all the rest: those of one point.
+          // Tangents cost more than all the rest: evaluate those of one point.
           const auto tangents =
             law->tangents(stiffness.stress(strains[at]) +
                             state.z[c * stress_space.n_samples + at],
@@ -105,10 +105,10 @@ namespace Viscoplastic
     const double pressures_square =
       Utilities::MPI::sum(std::accumulate(squares.begin(), squares.end(), 0.),
                           communicator);
-    // 3/2 in a single mode; bodies that hardly bend any more tell less of their
-    // curvatures.
+    // The factor is 3/2 in a single mode, but locked bodies, which hardly bend,
+    // show less of their curvatures.
     constexpr double calibration = 2.5;
-    // What is at rest under a pressure deforms by rounding only.
+    // Bodies at rest under a pressure have deviators by rounding only.
     const double factor = deviators_square > 1e-20 * pressures_square ?
                             calibration * defect / deviators_square :
                             0.;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 
 // An effect that a scene does not have is not constructed, evaluated or
-// allocated: by counts, not by clocks.
+// allocated. Tests count allocations and calls; they measure no times.
 
 #include "stepping_body.h"
 
@@ -14,8 +14,8 @@ namespace
   std::atomic<std::size_t> n_allocations{0};
 }
 
-// All of the test executable counts its allocations; deal.II's aligned vectors
-// have an allocator of their own, which does not come here.
+// Count all allocations of the test executable, except for deal.II's aligned
+// vectors, which do not use operator new.
 void *
 operator new(const std::size_t size)
 {
@@ -54,8 +54,8 @@ namespace
 
 
 
-  /// An elastic body on a symmetry plane, pushed more and more; @p more are
-  /// other entries, those of the foundation and the load apart.
+  /// An elastic body on a symmetry plane under a growing load; @p foundation
+  /// and @p push replace the entries of both, @p more are further entries.
   template <int dim>
   std::string
   bare(const std::string &more       = "",
@@ -104,7 +104,7 @@ namespace
 
 
 
-  /// Of the fourth step: what is made once has been made by then.
+  /// Count the allocations of the fourth step, after all one-time set-up.
   template <int dim>
   std::size_t
   allocations_of_a_step(const std::string &scene)
@@ -139,7 +139,7 @@ namespace
     EXPECT_FALSE(end.rate.has_value());
     EXPECT_EQ(end.space_estimate.squared_indicators.size(), 0u);
     EXPECT_EQ(end.errors.total(), 0.);
-    // Of all phases of a step, these.
+    // A step runs no phases but these.
     for (const auto &[phase, calls] :
          body.timer.get_summary_data(TimerOutput::n_calls))
       EXPECT_TRUE(phase == "load" || phase == "contact" || phase == "balance")
@@ -156,7 +156,7 @@ namespace
     EXPECT_GT(none, 0u);
     EXPECT_EQ(allocations_of_a_step<dim>(with_entries_without_effect<dim>()),
               none);
-    // Those that are there do allocate.
+    // Effects that are present do allocate.
     EXPECT_GT(allocations_of_a_step<dim>(bare<dim>(maxwell + no_error_bar)),
               none);
     EXPECT_GT(allocations_of_a_step<dim>(bare<dim>(no_law)), none);
@@ -171,7 +171,7 @@ namespace
 
   TYPED_TEST(AbsentEffects, StepsWithoutChangeAllocateLess)
   {
-    // They neither solve nor evaluate forces.
+    // Steps without change neither solve nor evaluate forces.
     constexpr int     dim   = TypeParam::value;
     const std::string plain = no_law + no_error_bar;
     SteppingBody<dim> body(typename SteppingBody<dim>::WholeScene{
@@ -183,7 +183,7 @@ namespace
     const std::size_t here = n_allocations - before;
     EXPECT_LT(here, allocations_of_a_step<dim>(bare<dim>(plain)));
 
-    // What a loose solve has left is no solution for a strict one.
+    // The result of a loose solve is no solution for a strict tolerance.
     body.accepted.report.relative_error = 1e-6;
     EXPECT_FALSE(body.stepper->next(body.accepted).is_unchanged);
   }

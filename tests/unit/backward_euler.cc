@@ -23,7 +23,7 @@ namespace
   using namespace Viscoplastic;
   using namespace Viscoplastic::Testing;
 
-  /// Where an increasing function vanishes between 0 and @p right.
+  /// Return the zero of an increasing function between 0 and @p right.
   double
   bisect(const std::function<double(double)> &f, double right)
   {
@@ -111,9 +111,9 @@ namespace
 
   TEST(BackwardEuler, BesideTheYieldSurfaceFromInside)
   {
-    // Strains are large, the stress is beyond the yield surface by 1e-10 of
-    // them, and the search begins inside, where a step goes to the trial
-    // stress, which is no better.
+    // Strains are large, the trial stress is beyond the yield surface by 1e-10
+    // of them, and Newton's method begins inside, from where its step leads to
+    // the trial stress.
     const Sample sample("perzyna", "set Yield radius = 0.5\nset Viscosity = 2");
     RandomTensors random;
     const double  kr = 100., k = kr * 2. / (2. * mu);
@@ -129,7 +129,7 @@ namespace
         const Tensor2 z     = implicit_irreversible_stress(
           *sample.law, strain, old_z, k, isotropic, sample.point, start);
         const Tensor2 stress = isotropic.stress(strain) + z;
-        // Rounding of strains is 1e-14.
+        // Strains of size 100 have rounding errors of 1e-14.
         EXPECT_NEAR(deviator(stress).norm() - 0.5,
                     excess / (1. + kr),
                     0.01 * excess);
@@ -140,7 +140,7 @@ namespace
 
   TEST(BackwardEuler, HardeningByHand)
   {
-    // Everything along one deviator.
+    // Strains and stresses are multiples of one deviator.
     RandomTensors random;
     for (const double H : {0.08, 0.8, 8.})
       {
@@ -209,7 +209,7 @@ namespace
             const Tensor2 trial = isotropic.stress(strain) + old_z;
             const double  p     = -trace(trial) / 3.;
             const double  q     = von_mises(trial);
-            // r at the trial stress, nearly
+            // Scale k by about the relaxation rate at the trial stress.
             const double k = kr * q / (3. * mu * std::max(c.f(q, p), 1e-3));
             expect_shortened(c.sample,
                              strain,
@@ -301,7 +301,7 @@ namespace
 
   TEST(BackwardEuler, JumpsEndInTime)
   {
-    // Beyond the stress 1 flow begins at once, which stops a step in between.
+    // The flow rate jumps at the stress 1, where no solution may exist.
     const Sample   sample("parsed", "set Strain rate = if(sigma_eq > 1, 1, 0)");
     const Counting law(*sample.law);
     const double   k = 1e-3 / (3. * mu);
@@ -316,7 +316,7 @@ namespace
               law, strain, z, k, sample.stiffness, sample.point, z);
           }
         catch (const ExceptionBase &)
-          {} // there is no stress
+          {} // no solution exists
         EXPECT_LT(law.n_calls, 200000u) << i;
       }
   }
@@ -325,7 +325,7 @@ namespace
 
   TEST(BackwardEuler, SaysWhereThereIsNoStress)
   {
-    // Flow that does not vanish with the stress has no answer below 3 mu k.
+    // A constant flow rate has no solution for trial stresses below 3 mu k.
     const Sample  sample("parsed", "set Strain rate = 1");
     const Tensor2 none;
     Tensor2       strain;
@@ -336,7 +336,7 @@ namespace
                       "may soften or jump there; take shorter steps."),
               std::string::npos)
       << message_of([&] { sample.z(strain, none, 1.); });
-    // Above, it has.
+    // Above 3 mu k there is a solution.
     expect_shortened(sample,
                      strain,
                      none,

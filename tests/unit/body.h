@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
-// What several unit tests need: scenes made from texts, with their meshes, and
-// a look at the sentences of errors.
+// Common parts of unit tests: scenes made from texts, with their meshes, and
+// messages of errors.
 
 #include <deal.II/base/mpi.h>
 #include <deal.II/dofs/dof_handler.h>
@@ -31,7 +31,7 @@
 
 namespace Viscoplastic::Testing
 {
-  /// Parameters from a text, which each rank reads from a file of its own.
+  /// Read parameters from a text, by a separate file on each rank.
   inline std::unique_ptr<Parameters>
   read_parameters(const std::string &text)
   {
@@ -107,7 +107,7 @@ namespace Viscoplastic::Testing
 
 
 
-  /// A rotation about a skew axis, so that nothing stays along an axis.
+  /// A rotation after which no face is along an axis.
   template <int dim>
   std::string
   oblique()
@@ -119,7 +119,7 @@ namespace Viscoplastic::Testing
 
 
 
-  /// A scene with its mesh and what depends on the mesh.
+  /// A scene with its mesh and all objects that depend on the mesh.
   template <int dim>
   struct Body
   {
@@ -147,7 +147,7 @@ namespace Viscoplastic::Testing
       triangulation.execute_coarsening_and_refinement();
     }
 
-    /// Also after a change of the mesh.
+    /// Set up all that depends on the mesh, also after a change of it.
     void
     set_up()
     {
@@ -191,7 +191,7 @@ namespace Viscoplastic::Testing
       return ghosted;
     }
 
-    /// Something without structure that is the same on any number of ranks.
+    /// A field without structure, the same on any number of ranks.
     DistributedVector
     rough_vector(const double phase = 0.) const
     {
@@ -204,7 +204,7 @@ namespace Viscoplastic::Testing
       });
     }
 
-    /// Its form in frames, zero where excluded.
+    /// rough_vector() in nodal frames, zero at excluded components.
     DistributedVector
     rough_unknowns(const double phase = 0.) const
     {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
-// A bulk with friction, and the solvers that work on it.
+// A body with friction, and the bulk solvers for it.
 
 #include "body.h"
 #include <viscoplastic_contact/discretization/bulk_system.h>
@@ -16,10 +16,10 @@
 
 namespace Viscoplastic::Testing
 {
-  /// A rotated box that rubs on two sides which meet: bilaterally below
-  /// (moving foundation), with given normal stress at x = 0; clamped at x = 2.
-  /// 2n cells along x, refined @p n_levels times, and once more near a vertex
-  /// of the face if @p refined. @p contact_law is that of the side below.
+  /// A rotated box with friction on two adjacent sides: below, on a moving
+  /// foundation with @p contact_law, and with given normal stress at x = 0;
+  /// clamped at x = 2. It has 2n cells along x, refined @p n_levels times, and
+  /// once more near a vertex of the face if @p refined.
   template <int dim>
   struct BulkScenario : Body<dim>
   {
@@ -101,8 +101,8 @@ namespace Viscoplastic::Testing
                                              dim));
     }
 
-    /// All meshes are levels, however small they are. The first one may be
-    /// left to smoothed aggregation.
+    /// Geometric multigrid with all meshes as levels, however small. The first
+    /// one may be left to smoothed aggregation.
     std::unique_ptr<BulkSolver>
     geometric(const bool has_algebraic_coarse_solver = false) const
     {

@@ -28,7 +28,7 @@ namespace
 
 
 
-  /// Everything on all ranks, without structure.
+  /// Matrix and load of a scenario as dense algebra, whole on all ranks.
   struct Dense
   {
     template <int dim>
@@ -73,8 +73,8 @@ namespace
       return Vector<double>(result.begin(), result.end());
     }
 
-    /// x with A x = b on the unknowns, zero elsewhere; A = K plus @p more on
-    /// the face, @p of as projector P there: P A P + (I - P).
+    /// Solve A x = b on the unknowns, x = 0 elsewhere. A is K plus @p more on
+    /// the face, restricted by @p projector P: P A P + (I - P).
     Vector<double>
     solve(const Vector<double>     &b,
           const FullMatrix<double> &projector,
@@ -207,7 +207,7 @@ namespace
         DistributedVector u(scenario.start);
         solver->solve(scenario.load, u, 1e-10);
         EXPECT_LT(distance(dense.gather(u), exact), 1e-8 * exact.l2_norm());
-        // The set-up serves again, from any start.
+        // The set-up can be used again, from any start.
         u.add(0.3, scenario.rough_unknowns(5.));
         solver->solve(scenario.load, u, 1e-10);
         EXPECT_LT(distance(dense.gather(u), exact), 1e-8 * exact.l2_norm());
@@ -272,7 +272,7 @@ namespace
             else
               spring = 0.7 * outer_product(q, q);
           }
-        // Not beyond the components of the node.
+        // Entries beyond the components of the node stay diagonal.
         for (unsigned int i = 0; i < 3; ++i)
           for (unsigned int j = 0; j < 3; ++j)
             if ((i >= face.n_node_dofs(node) || j >= face.n_node_dofs(node)) &&
@@ -309,7 +309,7 @@ namespace
         SCOPED_TRACE(solver->name());
         const bool is_direct =
           dynamic_cast<const SchurSolver *>(solver.get()) != nullptr;
-        // What the displacement is to be, the bulk following a direct solver.
+        // With a direct solver the bulk is in equilibrium for a given face.
         const auto relaxed = [&](const Vector<double> &u) {
           if (!is_direct)
             return u;
@@ -326,8 +326,8 @@ namespace
                        r           = solve->face_residual();
         EXPECT_LT(distance(r, dense.on_face(dense.residual(expected))), 1e-11);
 
-        // The face matrix foretells what moving the face does.
-        // Each node has its turn once.
+        // The face matrix predicts the residual after a motion of the face.
+        // Each node moves once.
         Vector<double>    foretold(r);
         const FaceMatrix &matrix    = solve->face_matrix();
         unsigned int      n_relaxed = 0;
@@ -368,7 +368,7 @@ namespace
               }
           }
 
-        // The error bound: exact for direct solvers.
+        // The error bound is exact for direct solvers.
         solve->set_truncation(truncation);
         Vector<double> unbalanced = dense.residual(expected);
         unbalanced -= dense.from_face(force);
@@ -377,7 +377,7 @@ namespace
                     norm,
                     is_direct ? 1e-9 * norm : 0.7 * norm);
 
-        // The correction on the truncated space.
+        // Compare the correction on the truncated space.
         Vector<double>       w(m);
         const Vector<double> correction =
           dense.solve(unbalanced, projector, springs);
@@ -385,7 +385,7 @@ namespace
         EXPECT_LT(distance(w, dense.on_face(correction)),
                   1e-7 * correction.l2_norm());
 
-        // A changed correction, and half a step of it.
+        // Change the correction and take half a step along it.
         if (m > 0)
           {
             w[0] += 0.01;
@@ -414,11 +414,11 @@ namespace
         EXPECT_LT(distance(lost, terms.response), 1e-10);
         EXPECT_LT(distance(r, dense.on_face(dense.residual(expected))), 1e-7);
 
-        // The displacement that comes out, prescribed values untouched.
+        // The final displacement, with prescribed values unchanged.
         solve->finish();
         EXPECT_LT(distance(dense.gather(u), expected),
                   1e-7 * expected.l2_norm());
-        // A direct solver leaves a small product out of its square.
+        // The squared norm of a direct solver omits a small product.
         const double energy = std::sqrt(dense.K.matrix_norm_square(expected));
         EXPECT_NEAR(solve->energy_norm(),
                     energy,
@@ -474,7 +474,7 @@ namespace
     const auto              solver = scenario.geometric();
     const auto             &stages = solver->face_matrix().stages();
     const unsigned int rank = Utilities::MPI::this_mpi_process(MPI_COMM_WORLD);
-    // Of each entry of the face on all ranks.
+    // Stage and owner of each entry of the face on all ranks.
     std::vector<unsigned int> stage(dense.face_dofs.size(), 0),
       owner(dense.face_dofs.size(), 0);
     for (unsigned int s = 0; s < stages.size(); ++s)

@@ -26,8 +26,8 @@ namespace
   {
     std::vector<CellId>                  owned, ghosts, as_they_come;
     std::vector<types::global_dof_index> dofs;
-    /// Of a value that differs from cell to cell: in the order of the mesh, and
-    /// as the cells come.
+    /// Sums of a value that differs between cells: in the order of
+    /// owned_cells() and in that of the triangulation's iterators.
     std::array<double, 2> sums;
     double                sum_as_they_come;
   };
@@ -114,17 +114,17 @@ namespace
     crooked.change(is_left);
     const Numbering after_detours = crooked.numbering();
     expect_same(after_detours, expected);
-    // The detours have left traces.
+    // Order of iterators depends on the history of the mesh.
     EXPECT_TRUE(Utilities::MPI::logical_or(after_detours.as_they_come !=
                                              expected.as_they_come,
                                            MPI_COMM_WORLD));
-    // Few cells in two dimensions happen to be rounded alike.
+    // In two dimensions the few cells happen to have equal sums.
     EXPECT_TRUE(dim == 2 ||
                 Utilities::MPI::logical_or(after_detours.sum_as_they_come !=
                                              expected.sum_as_they_come,
                                            MPI_COMM_WORLD));
 
-    // As in a restart.
+    // Restore the mesh as a restart does.
     HistoricBody<dim> restored;
     restore_mesh(Utilities::MPI::all_gather(MPI_COMM_WORLD,
                                             pack_mesh(crooked.triangulation)),

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 
-// The arguments of the program, and what a run says of itself.
+// The arguments of the program and the messages of a run on its progress.
 
 #include "body.h"
 #include "folder.h"
@@ -93,10 +93,10 @@ namespace
     for (unsigned int i = 0; i < 5; ++i)
       remaining.add_step(2., 100.);
     EXPECT_DOUBLE_EQ(remaining.seconds(10, 100.), 20.);
-    // Twice the cells take twice the time, before a step has shown it.
+    // Twice the cells are expected to take twice the time.
     EXPECT_DOUBLE_EQ(remaining.seconds(10, 200.), 40.);
     EXPECT_EQ(remaining.seconds(0, 100.), 0.);
-    // Slow steps are forgotten.
+    // Earlier slow steps lose their weight.
     for (unsigned int i = 0; i < 60; ++i)
       remaining.add_step(0.5, 100.);
     EXPECT_NEAR(remaining.seconds(10, 100.), 5., 0.2);
@@ -107,7 +107,7 @@ namespace
 
   TEST(Progress, TimeLeftIsTrueFromTheTenthStepOn)
   {
-    // The first step sets up, each hundredth one writes fields.
+    // The first step includes the set-up, each hundredth one writes fields.
     const auto seconds = [](const unsigned int n) {
       return n == 1 ? 20. : n % 100 == 0 ? 51. : 1.;
     };
@@ -173,7 +173,7 @@ namespace
   {
     for (const unsigned int n_steps : {1u, 7u, 200u, 201u, 100000u})
       {
-        // Each step has other iterations than the one before.
+        // The number of iterations differs from that of the step before.
         const auto lines = lines_of_run(n_steps, [&](const unsigned int n) {
           StepProgress step       = plain_step(n);
           step.contact_iterations = 3 + (n_steps - n) % 2;
@@ -212,7 +212,7 @@ namespace
 
   TEST(Progress, EventsHaveLinesOfTheirOwn)
   {
-    // Of 10000 steps, in which iterations go to and fro.
+    // The number of iterations alternates in 10000 steps.
     const auto step = [](const unsigned int n) {
       StepProgress step       = plain_step(n);
       step.contact_iterations = 3 + n % 2;
@@ -226,7 +226,7 @@ namespace
     const auto steps = steps_of(lines);
     for (const unsigned int n : {1234u, 4321u, 6789u})
       EXPECT_EQ(std::count(steps.begin(), steps.end(), n), 1) << n;
-    // A mesh that changes in each step floods nothing either.
+    // The number of lines is bounded also if the mesh changes in each step.
     const auto meshes = lines_of_run(10000, [](const unsigned int n) {
       StepProgress step = plain_step(n);
       step.n_cells      = n;
@@ -237,7 +237,7 @@ namespace
 
 
 
-  /// What a heartbeat that waits for @p seconds says of a step.
+  /// The log of a step by a heartbeat with the waiting time @p seconds.
   std::string
   beats_of_step(const double seconds, const bool is_quiet = false)
   {
@@ -249,12 +249,12 @@ namespace
       Heartbeat::begin_step(3, 0.25);
       for (unsigned int i = 0; i < 4; ++i)
         {
-          // Longer than a hundredth of all.
+          // Sleep for more than a hundredth of the whole time.
           std::this_thread::sleep_for(std::chrono::milliseconds(2));
           Heartbeat::count(i < 2 ? Loop::contact : Loop::linear);
         }
     }
-    Heartbeat::count(Loop::linear); // of no run
+    Heartbeat::count(Loop::linear); // without a heartbeat
     std::ifstream      file(log);
     std::ostringstream text;
     text << file.rdbuf();
@@ -285,7 +285,7 @@ namespace
     Console           console(MPI_COMM_SELF, true, log);
     EXPECT_FALSE(console.is_silent_for(10.));
     EXPECT_TRUE(console.is_silent_for(0.));
-    // In long runs it takes a hundredth of them.
+    // The console is silent only after a hundredth of its age.
     while (!(console.age() > 0.01))
       ;
     console.stream() << "a line" << std::endl;
@@ -308,7 +308,7 @@ namespace
 
   TEST(CommandLine, LoneProcessOfOpenMpi)
   {
-    // What is said to Open MPI, and what a launcher says.
+    // Variables to be set for Open MPI, and variables of launchers.
     const std::vector<std::pair<std::string, std::string>> wanted{
       {"OMPI_MCA_ess_singleton_isolated", "1"},
       {"OMPI_MCA_orte_create_session_dirs", "0"},
@@ -332,7 +332,7 @@ namespace
       {
         run_without_mpi_job();
         EXPECT_STREQ(std::getenv(name.c_str()), value.c_str());
-        setenv(name.c_str(), "other", 1); // the user's word
+        setenv(name.c_str(), "other", 1); // set by the user
         run_without_mpi_job();
         EXPECT_STREQ(std::getenv(name.c_str()), "other");
       }

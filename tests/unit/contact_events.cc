@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 
-// What counts as an event of contact, and what turning slip costs.
+// Which changes count as an event of contact, and the work of turning slip.
 
 #include <viscoplastic_contact/contact/contact_event.h>
 
@@ -50,11 +50,11 @@ namespace
     EXPECT_FALSE(event(".>>", "..>"));
     EXPECT_FALSE(event(">>>", ".>>"));
     EXPECT_FALSE(event(">>>", ">>>"));
-    // Behind a kink of the data, an end and a turn are no news.
+    // After a kink of the data, end and reversal of slip are no events.
     EXPECT_FALSE(has_contact_event(face, points("..>"), points("..."), true));
     EXPECT_FALSE(has_contact_event(face, points("..>"), points("..<"), true));
     EXPECT_TRUE(has_contact_event(face, points("..."), points("..<"), true));
-    // Points without friction slip always, glued ones never.
+    // Points without friction always slip, glued ones never; both do not count.
     const std::vector<double> bounds{0.,
                                      1.,
                                      std::numeric_limits<double>::infinity()};
@@ -71,7 +71,7 @@ namespace
 
   TEST(ContactEvent, TouchCoverLiftOff)
   {
-    // Obstacles that are touched, '|', or not.
+    // '|' marks obstacles in contact.
     ContactLayout face;
     face.has_obstacles = true;
     face.points.resize(3);
@@ -98,7 +98,7 @@ namespace
     EXPECT_FALSE(event("  |", " ||"));
     EXPECT_FALSE(event("|||", " ||"));
     EXPECT_FALSE(event("|||", "|||"));
-    // Behind a kink, beginning and end are no news.
+    // After a kink, beginning and end of contact are no events.
     EXPECT_FALSE(event("   ", "  |", true));
     EXPECT_FALSE(event("  |", "   ", true));
     EXPECT_TRUE(event(" ||", "|||", true));
@@ -135,8 +135,8 @@ namespace
     EXPECT_NEAR(work(state({0., 0.2}), state({0.3, 0.1})),
                 n_ranks * 6. * (2. - std::cos(0.3) - std::cos(0.1)),
                 1e-13);
-    // Slip that turns back counts as a right angle, slip that begins or ends
-    // not.
+    // Slip that reverses counts as a right angle, slip that begins or ends does
+    // not count.
     EXPECT_NEAR(work(state({0.}), state({numbers::PI})), n_ranks * 6., 1e-13);
     ContactState at_rest = state({0.});
     at_rest.sticks[0]    = true;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 
-// The solver of frictional contact against projected gradients on the dual of
-// small convex problems: slow and sure.
+// The solver of frictional contact against projected gradients, a slow but
+// reliable method, on the dual of small convex problems.
 
 #include "dense_bulk.h"
 #include "refusals.h"
@@ -20,7 +20,7 @@ namespace
   using namespace Viscoplastic;
   using namespace Viscoplastic::Testing;
 
-  /// How points end and what that takes, summed over problems.
+  /// Numbers of final states of points and of iterations, over all problems.
   struct Counts
   {
     unsigned int n_stick = 0, n_slip = 0, n_iterations = 0;
@@ -139,7 +139,7 @@ namespace
 
 
 
-  /// A ring of nodes that are all alike.
+  /// A ring of equal nodes.
   Problem
   ring(const unsigned int n_nodes, const unsigned int n_tangents)
   {
@@ -178,7 +178,7 @@ namespace
                   << (condensed ? ", condensed" : ", frozen bulk");
             SCOPED_TRACE(trace.str());
             Problem problem = ring(12, n_tangents);
-            // The stick force is the load, up to rounding below.
+            // The sticking force is the load with a perturbation by rounding.
             Random random(3);
             for (unsigned int i = 0; i < problem.size(); ++i)
               problem.load[i] = 0.3 * (1. + excess) *
@@ -224,7 +224,7 @@ namespace
               problem.load *= 3.;
               const Result first = solve(problem, condensed, tolerance);
 
-              // The load turns round; start as if the slip went on.
+              // The load reverses; the start extrapolates the old slip.
               Vector<double> start(first.u);
               start.sadd(2., -1., problem.u_prev);
               problem.u_prev = first.u;
@@ -298,8 +298,8 @@ namespace
 
   TEST(ContactSolver, TwoPlanesWithBoundsBeyondTheLoads)
   {
-    // Much more than the body can bring to bear; slip is left to a part of the
-    // points whose bounds are not.
+    // Most bounds are larger than any force in the body, so that only points
+    // with the other bounds may slip.
     constexpr double tolerance = 1e-10;
     for (const double degrees : {90., 60., 30., 150., 120.})
       for (unsigned int seed = 600; seed < 636; ++seed)
@@ -323,8 +323,8 @@ namespace
 
   TEST(ContactSolver, FoundationsThatMove)
   {
-    // Each point slips over its own, also where several share a node or, at 0
-    // degrees, all directions.
+    // Each point slips over its own foundation, also if several share a node
+    // or, at 0 degrees, all directions.
     for (const unsigned int dim : {2, 3})
       for (const double degrees : {0., 90., 30.})
         {
@@ -355,8 +355,8 @@ namespace
 
   TEST(ContactSolver, SlipsThatAreAPartOfTheMotion)
   {
-    // Where another condition holds the node along a direction that is oblique
-    // to the piece: rows of other lengths than 1, not at a right angle.
+    // Rows that are neither orthogonal nor of unit length, as where another
+    // condition holds the node in a direction oblique to the piece.
     for (const unsigned int n_tangents : {1, 2})
       {
         Counts counts;
@@ -397,14 +397,14 @@ namespace
               Problem problem = corner_problem(seed, dim, degrees);
               problem.bounds.assign(problem.bounds.size(), infinity);
               const Result result = solve(problem, condensed, tolerance);
-              // Two planes hold all components of a node.
+              // Two planes with infinite bounds hold all components of a node.
               const auto slips = problem.slips(result.u);
               for (unsigned int p = 0; p < slips.size(); ++p)
                 {
                   EXPECT_TRUE(result.state.sticks[p]);
                   EXPECT_LT(slips[p].norm(), 1e-12);
                 }
-              // Equilibrium.
+              // The forces are in equilibrium.
               Vector<double> unbalanced = problem.residual(result.u);
               unbalanced -= problem.force(result.state.multiplier);
               EXPECT_LT(unbalanced.l2_norm(), 1e-7);
@@ -449,7 +449,7 @@ namespace
     for (const unsigned int n_tangents : {1, 2})
       for (const unsigned int max_iterations : {0, 1})
         {
-          // Loose linear solves: never done after one correction.
+          // With inaccurate linear solves one correction does not suffice.
           const Problem problem = random_problem(810, n_tangents);
           expect_refusal(
             [&] {

@@ -34,16 +34,16 @@ namespace Viscoplastic::Testing
   }
 
 
-  /// J(u) = 1/2 u . A u - l . u + sum_c rho_c |s_c| with slips relative to the
-  /// foundation of each point, where s_c <= d_c at obstacles, whose bound is
-  /// d_c. The unknowns of the face are the last ones.
+  /// Minimize J(u) = 1/2 u . A u - l . u + sum_c rho_c |s_c| with slips
+  /// relative to the foundation of each point, and s_c <= d_c at obstacles,
+  /// whose bound is d_c. The unknowns of the face are the last ones.
   struct Problem
   {
     FullMatrix<double>  A;
     Vector<double>      load, u_prev;
     ContactLayout       face;
     std::vector<double> bounds;
-    /// Empty where no foundation moves.
+    /// The motion of foundations by point; empty if none moves.
     std::vector<Tensor<1, 2>> foundation_step;
 
     unsigned int
@@ -108,7 +108,7 @@ namespace Viscoplastic::Testing
       return std::sqrt(A.matrix_norm_square(u));
     }
 
-    /// What rounding leaves in any case, as StepSolver sees it.
+    /// The error of rounding as StepSolver estimates it.
     double
     rounding_error(const Vector<double> &start) const
     {
@@ -147,7 +147,7 @@ namespace Viscoplastic::Testing
 
 
 
-  /// L of a positive definite matrix L L^T.
+  /// Return the Cholesky factor L of a positive definite matrix L L^T.
   inline LAPACKFullMatrix<double>
   cholesky_factor(const FullMatrix<double> &matrix)
   {
@@ -227,8 +227,7 @@ namespace Viscoplastic::Testing
 
 
 
-  /// Two pieces that meet at an angle, in 3D at an edge: the rows of their
-  /// slips.
+  /// The rows of slips of two pieces that meet at an angle, in 3D at an edge.
   inline std::vector<std::vector<Tensor<1, 3>>>
   planes_at_an_angle(const unsigned int dim, const double degrees)
   {
@@ -243,8 +242,8 @@ namespace Viscoplastic::Testing
 
 
 
-  /// The rest of a problem whose nodes are there: with @p n_bulk unknowns
-  /// besides those of the face, and bounds in an interval.
+  /// Complete a problem with given nodes by @p n_bulk unknowns besides those of
+  /// the face, and by bounds in an interval.
   inline void
   fill_at_random(Problem           &problem,
                  Random            &random,
@@ -320,10 +319,10 @@ namespace Viscoplastic::Testing
 
 
 
-  /// A network of springs whose stiffnesses lie up to @p decades apart from 1
-  /// in either direction, held by springs of its own or by hardly anything but
-  /// contact: without obstacles, with rigid ones, or with some that are as much
-  /// softer or stiffer than the body. Loads and bounds of all sizes.
+  /// A network of springs with stiffnesses up to @p decades above or below 1,
+  /// held by springs or by hardly anything but contact: without obstacles, with
+  /// rigid ones, or with obstacles that are as much softer or stiffer. Loads
+  /// and bounds have all sizes.
   inline Problem
   spring_network(const unsigned int seed, const double decades)
   {
@@ -438,7 +437,7 @@ namespace Viscoplastic::Testing
       return u;
     };
 
-    // The dual matrix, entry by entry, for cheap iterations.
+    // Compute the dual matrix by entries, so that iterations are cheap.
     const unsigned int        m = 2 * n_points;
     std::vector<Tensor<1, 2>> lambda(n_points);
     const auto                free_slips = problem.slips(displacement(lambda));

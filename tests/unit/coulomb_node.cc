@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 
-// Coulomb's law at one node: the law itself for random nodes, and all solutions
-// by brute force where the plane has few of them.
+// Coulomb's law at one node: solutions satisfy the law at random nodes, and are
+// among all solutions in the plane, found by brute force.
 
 #include "random.h"
 #include <viscoplastic_contact/contact/contact_points.h>
@@ -35,7 +35,7 @@ namespace
       node.free_motion[i] = random.uniform();
     if (random.integer(0, 3) == 0)
       node.given = random.uniform(0., 0.3);
-    // Ties: a node that just touches, that is just held, without friction.
+    // Limit cases: nodes that just touch, are just held, or lack friction.
     switch (random.integer(0, 9))
       {
         case 0:
@@ -62,7 +62,7 @@ namespace
 
 
 
-  /// By how much p and the friction that it allows miss the laws.
+  /// The violation of the laws by the pressure p with its friction.
   double
   violation(const CoulombNode &node, const double p)
   {
@@ -105,7 +105,7 @@ TEST(CoulombNode, ObeysTheLaw)
       EXPECT_LT(violation(node, p), 1e-11 * (1. + p)) << "seed " << seed;
       if (!compliance.is_rigid())
         continue;
-      // In another unit of force.
+      // The pressure scales with the unit of force.
       constexpr double unit = 1ull << 40;
       CoulombNode      other(node);
       other.flexibility /= unit;
@@ -119,7 +119,7 @@ TEST(CoulombNode, ObeysTheLaw)
 
 TEST(CoulombNode, IsASolutionThatBruteForceFinds)
 {
-  // In the plane, on a rigid foundation: open, stuck, or slipping to a side.
+  // In the plane, a node on a rigid foundation is open, sticks, or slips.
   const NormalCompliance rigid;
   unsigned int           n_several = 0;
   for (unsigned int seed = 0; seed < 2000; ++seed)
@@ -161,6 +161,6 @@ TEST(CoulombNode, IsASolutionThatBruteForceFinds)
       EXPECT_LT(nearest, 1e-11 * (1. + found)) << "seed " << seed;
       n_several += spread > 1e-6;
     }
-  // Friction coefficients go up to 2.
+  // With friction coefficients up to 2 some nodes have several solutions.
   EXPECT_GT(n_several, 0);
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 
-// The contact solver with Coulomb's law of the step's own pressure, on small
-// dense problems, against a damped fixed point of given bounds.
+// The contact solver with friction bounds by the pressure of the step itself,
+// on small dense problems, against a damped fixed point of given bounds.
 
 #include "dense_bulk.h"
 
@@ -24,9 +24,9 @@ namespace
 
 
 
-  /// Nodes on rigid foundations, mu at most @p largest. Half of the problems
-  /// are ties: no load, no distance, a start in equilibrium, mu that vanishes
-  /// or varies along the face.
+  /// The kinds of nodes in random problems on rigid foundations. Half of the
+  /// problems are limit cases: no load, no distance, a start in equilibrium, mu
+  /// that vanishes or varies along the face.
   enum class Nodes
   {
     plain,
@@ -145,7 +145,7 @@ namespace
 
 
 
-  /// The laws of contact and equilibrium, by their own.
+  /// Check the laws of contact and equilibrium.
   void
   expect_laws(const CoulombProblem &coulomb,
               const Result         &result,
@@ -184,7 +184,7 @@ namespace
 
 
 
-  /// Bounds that follow the pressure by a share, each time to the end.
+  /// Iterate solves with given bounds, which follow the pressure by @p share.
   bool
   find_fixed_point(const CoulombProblem &coulomb,
                    const double          share,
@@ -215,7 +215,7 @@ namespace
 
 
 
-  /// The corrections that the problem takes with the bounds that have come out.
+  /// The number of corrections of a solve with the final bounds held fixed.
   unsigned int
   corrections_of_given_bounds(const CoulombProblem &coulomb,
                               const Result         &result,
@@ -249,7 +249,7 @@ TEST(CoulombSolver, SolvesAllRandomProblems)
       expect_laws(coulomb, result, 1e-7);
       if (nodes_of(seed) != Nodes::plain)
         continue;
-      // The price: corrections with the bounds that have come out.
+      // Compare corrections with those of a solve for the final bounds.
       n_corrections += result.report.iterations;
       n_of_given_bounds +=
         corrections_of_given_bounds(coulomb, result, condensed);
@@ -261,10 +261,10 @@ TEST(CoulombSolver, SolvesAllRandomProblems)
 
 TEST(CoulombSolver, SolvesWherePiecesMeet)
 {
-  // Of 20 000 problems some that were refused, though a search over what each
-  // point may do finds solutions: nodes wedged between two pieces (2D), slips
-  // along an edge that turn, nodes whose pieces do not settle one after the
-  // other, and two that only the path from small mu finds.
+  // Hard cases among 20 000 problems, for which a search over all states of
+  // points finds solutions: nodes wedged between two pieces (2D), slips along
+  // an edge that turn, nodes whose pieces do not settle one after the other,
+  // and two that need a continuation from small mu.
   for (const unsigned int seed :
        {3144, 4416, 5044, 2403, 2999, 3290, 5267, 12660, 15030})
     {
@@ -279,9 +279,9 @@ TEST(CoulombSolver, SolvesWherePiecesMeet)
 
 TEST(CoulombSolver, SolvesWhereOneOfTwoPiecesGivesWay)
 {
-  // What the soft piece sticks to, the rigid one holds as well, and friction
-  // along the soft one's normal follows from that: the linear system has to
-  // know what part of it changes.
+  // The rigid piece holds the direction in which the soft one sticks, and
+  // friction along the soft one's normal depends on that: the linear system has
+  // to contain the part of it that changes.
   unsigned int n_corrections = 0, n_of_given_bounds = 0;
   for (unsigned int seed = 0; seed < 800; ++seed)
     {
@@ -302,7 +302,7 @@ TEST(CoulombSolver, SolvesWhereOneOfTwoPiecesGivesWay)
 
 TEST(CoulombSolver, FindsTheFixedPointOfBounds)
 {
-  // Where mu is small there is but one solution.
+  // For small mu the solution is unique.
   for (unsigned int seed = 0; seed < 24; ++seed)
     {
       const CoulombProblem coulomb =
@@ -320,9 +320,9 @@ TEST(CoulombSolver, FindsTheFixedPointOfBounds)
 
 TEST(CoulombSolver, TellsWherePivotsChangeTheirSign)
 {
-  // Of 20 000 problems those in which the system of the sets that come out has
-  // a negative determinant: solutions are several there. `contraction`, a
-  // quotient of the corrections alone, is less than 1 in one half of them.
+  // Those of 20 000 problems in which the system of the final active sets has a
+  // negative determinant, so that there are several solutions. In half of them
+  // `contraction`, a quotient of corrections, is less than 1.
   const std::vector<unsigned int> negative{58,    135,   147,   1342,  2520,
                                            3683,  3874,  4368,  5214,  5816,
                                            6121,  6412,  7134,  9081,  10432,
@@ -349,11 +349,11 @@ TEST(CoulombSolver, TellsWherePivotsChangeTheirSign)
 
 TEST(CoulombSolver, ForceOfACornerIsShared)
 {
-  // A node is pressed onto a wall by 1, pushed along it by 0.3, and friction of
-  // a second piece, within 0.1, acts along the normal of the wall. It may take
-  // any part l of the 1; the wall is left with p = 1 - l, and friction along it
-  // with 0.3 p. All of these are solutions: the node sticks for l <= 0, and
-  // slips by 0.3 l otherwise, by 1e-12 as well as by 0.03.
+  // A node is pressed onto a wall by 1 and pushed along it by 0.3, and friction
+  // l of a second piece, |l| <= 0.1, acts along the normal of the wall. For any
+  // l, the wall has the pressure p = 1 - l and friction up to 0.3 p. All of
+  // these are solutions: the node sticks for l <= 0, and slips by 0.3 l
+  // otherwise, by 1e-12 as well as by 0.03.
   constexpr double mu = 0.3;
   CoulombProblem   corner;
   Problem         &problem = corner.problem;
@@ -379,7 +379,7 @@ TEST(CoulombSolver, ForceOfACornerIsShared)
   for (const double share : {-0.1, -0.03, 0., 1e-12, 0.04, 0.1})
     {
       expect_laws(corner, solution(share), 1e-15);
-      // The solver ends with one that sticks or one that slips, as it begins.
+      // A solver that begins with sticking ends with it, and so with slip.
       DenseBulk bulk(problem, true);
       bulk.start_at(problem.u_prev);
       bulk.scale.rounding_error = 1e-13;
@@ -401,8 +401,8 @@ TEST(CoulombSolver, ForceOfACornerIsShared)
 
 TEST(CoulombSolver, BoundsItsError)
 {
-  // What stops the iteration, against what a solve to rounding changes: not
-  // less, and as a rule not much more.
+  // The error bound that stops the iteration is not less than the difference to
+  // a solve up to rounding, and usually not much larger.
   for (const Nodes nodes : {Nodes::plain, Nodes::corners})
     {
       double       logarithms = 0.;
@@ -427,7 +427,7 @@ TEST(CoulombSolver, BoundsItsError)
                 }
             }
         }
-      // 2.3 and 2.5
+      // The mean ratios are 2.3 and 2.5.
       EXPECT_LT(std::pow(10., logarithms / n), 5.);
     }
 }

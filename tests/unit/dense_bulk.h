@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
-// The contact solver with a dense stand-in for the bulk.
+// The contact solver with a dense substitute for the bulk solver.
 
 #include <deal.II/lac/precondition.h>
 #include <deal.II/lac/solver_cg.h>
@@ -76,7 +76,7 @@ namespace Viscoplastic::Testing
     double
     rounding_of_residual() override
     {
-      // The mean over all signs.
+      // Take the root mean square over random signs of rounding errors.
       double sum = 0.;
       for (unsigned int i = 0; i < u.size(); ++i)
         {
@@ -112,7 +112,7 @@ namespace Viscoplastic::Testing
       unsigned int             iterations = 0;
       if (!truncation.tilt.empty())
         {
-          // Not symmetric.
+          // The matrix is not symmetric.
           LAPACKFullMatrix<double> factor(problem.size());
           factor = matrix;
           factor.compute_lu_factorization();
@@ -133,7 +133,7 @@ namespace Viscoplastic::Testing
             }
           catch (const SolverControl::NoConvergence &)
             {
-              // As good as rounding lets it be.
+              // The result is as accurate as rounding allows.
             }
           iterations = control.last_step();
         }
@@ -208,7 +208,7 @@ namespace Viscoplastic::Testing
       const unsigned int first = problem.first(), n = problem.face.n_dofs();
       FullMatrix<double> K(n, n);
       const auto         factor = cholesky_factor(problem.A);
-      // The Schur complement has the last block of the factor.
+      // The last block of the factor is that of the Schur complement.
       for (unsigned int i = 0; i < n; ++i)
         for (unsigned int j = 0; j < n; ++j)
           if (condensed)
@@ -247,7 +247,7 @@ namespace Viscoplastic::Testing
         v[problem.first() + i] = c[i];
     }
 
-    /// P (tilt A + springs) P + (I - P), the latter of the size of the former.
+    /// P (tilt A + springs) P + c (I - P), with c of the size of the matrix.
     FullMatrix<double>
     truncated_matrix() const
     {
@@ -353,7 +353,7 @@ namespace Viscoplastic::Testing
       ContactSolver(max_iterations)
         .solve(bulk, problem.face, tolerance, increment, state);
     EXPECT_TRUE(bulk.is_finished);
-    // The increment returned is that of the displacement.
+    // The returned increment is that of the displacement on the face.
     Vector<double> change(bulk.u);
     change -= problem.u_prev;
     change = problem.on_face(change);
@@ -376,8 +376,8 @@ namespace Viscoplastic::Testing
 
 
 
-  /// J(u) minus the dual energy of the multipliers: no less than half the
-  /// squared energy error.
+  /// J(u) minus the dual energy of the multipliers, which is at least half of
+  /// the squared energy error.
   inline double
   duality_gap(const Problem &problem, const Result &result)
   {
@@ -397,7 +397,7 @@ namespace Viscoplastic::Testing
 
 
 
-  /// The friction law, point by point, and the bound of the error.
+  /// Check the friction law, point by point, and the error.
   inline void
   expect_solution(const Problem  &problem,
                   const Result   &result,
@@ -455,7 +455,7 @@ namespace Viscoplastic::Testing
             EXPECT_EQ(lambda.norm(), 0.);
           }
       }
-    // Multipliers may not be unique, but their forces are.
+    // Multipliers may not be unique, but their forces are unique.
     Vector<double> force = problem.force(result.state.multiplier);
     force -= problem.force(reference.multipliers);
     EXPECT_LT(force.l2_norm(),

@@ -24,8 +24,8 @@ namespace
 
 
 
-  /// The sum of small matrices for lists of nodes, of which rank after rank has
-  /// one, whoever owns the nodes; and the same matrix as a whole.
+  /// A sum of small matrices for lists of nodes, dealt out to the ranks
+  /// regardless of who owns the nodes, and the same matrix as a whole.
   template <int dim>
   struct Sum
   {

@@ -28,7 +28,7 @@ namespace
 
   TEST(Perzyna, RateByHand)
   {
-    // |dev diag(3, 0, 0)| = sqrt(6): half of the deviator is in excess.
+    // |dev diag(3, 0, 0)| = sqrt(6), of which half exceeds the yield radius.
     expect_near(
       FlowingBody(perzyna(std::sqrt(6.) / 2, 2.)).rate(symmetric(3, 0, 0)),
       symmetric(-0.4, 0.2, 0.2),
@@ -40,7 +40,7 @@ namespace
                 symmetric(0, 0, 0, 0, -0.8 * (1 - 0.1 / std::sqrt(2.))),
                 1e-14);
 
-    // Elastic under any pressure, and up to the yield surface.
+    // The body is elastic under any pressure and inside the yield surface.
     expect_near(body.rate(symmetric(-9, -9, -9)), {}, 0);
     expect_near(body.rate(symmetric(0, 0, 0, 0.0707)), {}, 0);
     EXPECT_TRUE(body.law->deviatoric_flow());
@@ -59,14 +59,14 @@ namespace
     expect_near(body.rate(stress, strain),
                 symmetric(0, 0, 0, -0.8 * (1 - R)),
                 1e-14);
-    // Volumetric strain does not harden, and flow back hardens likewise.
+    // Volumetric strain does not harden; the sign of the strain is irrelevant.
     expect_near(body.rate(stress, strain + symmetric(1, 1, 1)),
                 body.rate(stress, strain),
                 1e-14);
     expect_near(body.rate(stress, strain - symmetric(0, 0, 0, 0.6)),
                 body.rate(stress, strain),
                 1e-14);
-    // Inside the larger range.
+    // There is no flow inside the hardened elastic range.
     expect_near(body.rate(0.9 * R * stress,
                           stiffness.strain(0.9 * R * stress) +
                             symmetric(0, 0, 0, 0.3)),
@@ -123,7 +123,7 @@ namespace
     EXPECT_NEAR(body.stored_energy(0.75 * stress, strain),
                 energy / 2 + energy / 8,
                 1e-16);
-    // In the second spring the whole strain, then nothing.
+    // The second spring has the whole strain at first, and none at the end.
     expect_near(body.law->driving_strain(stress, strain, stiffness, body.point),
                 strain,
                 1e-15);
@@ -137,8 +137,8 @@ namespace
 
 
 
-  // E_inf = E in pressure: that mode has no second spring. What the body has
-  // there is 1/2 E^-1 sigma : sigma, also if it began with pressure.
+  // With E_inf = E for pressure, that mode has no second spring. Its energy is
+  // 1/2 E^-1 sigma : sigma, also with an initial pressure.
   TEST(Zener, PressureThatDoesNotRelax)
   {
     EXPECT_NEAR(Stiffness::isotropic(6. / 11, 4. / 11).bulk_modulus(),
@@ -190,10 +190,10 @@ namespace
 
 
 
-  // An initial stress may be in any mode.
+  // The energy is balanced for an initial stress in any mode.
   TEST(Zener, EnergyBalanceWhereModesDoNotRelax)
   {
-    // E_inf, half of the isotropic one, and three modes which are not its own.
+    // E is E_inf plus three modes that are no eigenvectors of E_inf.
     FullMatrix<double> matrix      = voigt({{{{0.6, 0.2, 0.2, 0, 0, 0}},
                                              {{0.2, 0.6, 0.2, 0, 0, 0}},
                                              {{0.2, 0.2, 0.6, 0, 0, 0}},
@@ -466,11 +466,11 @@ namespace
           SCOPED_TRACE(factor);
           const Tensor2 stress = random.with_deviator(factor * 0.7);
           check(FlowingBody(perzyna(0.7, 0.2), E), stress, {});
-          // Of a von Mises cap of 0.7 sqrt(3/2).
+          // A von Mises cap of 0.7 sqrt(3/2) is |dev sigma| = 0.7.
           check(FlowingBody(norton(0.5, 3., 0.7 * std::sqrt(1.5)), E),
                 stress,
                 {});
-          // The radius is 0.7 with the strain of this length.
+          // The hardened yield radius is 0.7 at this viscoplastic strain.
           check(FlowingBody(perzyna(0.5, 0.2, 0.5), E),
                 stress,
                 E.strain(stress) + 0.4 * std::sqrt(1.5) /
@@ -486,7 +486,7 @@ namespace
                                     FlowingBody(norton(1., 2., 1.)),
                                     FlowingBody(parsed("sigma_eq"))})
       {
-        // Without pressure, in which such a stress would be lost.
+        // Rounding of a pressure would exceed such a small stress.
         check(body, deviator(random.with_deviator(1e-9)), {});
         const Tensor4 at_zero = body.tangents({}).stress;
         EXPECT_NEAR(largest_eigenvalue(at_zero),

@@ -202,7 +202,7 @@ namespace
     elastic_cell_matrix(ours, Stiffness::isotropic(E, nu), false, matrix);
     elastic_cell_matrix(ours, Stiffness::isotropic(E, nu), true, mean);
 
-    // Under mean dilatation, K div div becomes that of the means.
+    // Mean dilatation replaces K div div by the product of cell means.
     const double        bulk   = lambda + 2. / 3. * mu;
     double              volume = 0.;
     std::vector<double> divergence(n, 0.);
@@ -236,7 +236,7 @@ namespace
           EXPECT_EQ(mean(i, j), mean(j, i));
         }
 
-    // Rigid motions cost nothing, homogeneous strain |K|/2 E eps : eps.
+    // Rigid motions have no energy, homogeneous strain |K|/2 E eps : eps.
     Vector<double> rotation(n), stretch(n);
     const auto     cell = triangulation.begin_active();
     for (unsigned int i = 0; i < n; ++i)
@@ -313,7 +313,7 @@ namespace
         matrix.vmult(product, u_frames);
         const double form = product * v_frames;
 
-        // By the samples of stress and strain, cell by cell: another path.
+        // The same form from samples of stress and strain, cell by cell.
         std::vector<SymmetricTensor<2, 3>> strain(
           body->stress_space->n_samples);
         std::vector<SymmetricTensor<2, 3>> other(body->stress_space->n_samples);
@@ -366,8 +366,8 @@ namespace
         body->space->to_frames(u, u_frames);
         matrix.vmult(product, u_frames);
         const double size = product.linfty_norm();
-        work += product; // the load is minus the work
-        // Rows of hanging nodes are empty in the load, and of no use in the
+        work += product; // the load of z is minus (z, eps(v))
+        // Rows of hanging nodes are empty in the load and meaningless in the
         // matrix.
         body->set_excluded_to_zero(work);
         EXPECT_LT(work.linfty_norm(), 1e-12 * size);
@@ -375,7 +375,7 @@ namespace
   }
 
 
-  /// The sum of all cell matrices, each computed by itself.
+  /// Assemble the matrix from cell matrices each computed separately.
   template <int dim>
   void
   assemble_one_by_one(const Body<dim> &body, DistributedMatrix &matrix)
@@ -401,8 +401,8 @@ namespace
 
   TYPED_TEST(ElasticMatrix, IsTheSumOfCellMatrices)
   {
-    // On the left cells are translates of each other, on the right they are
-    // not, and some are refined; whatever the material.
+    // Cells on the left are translates of each other, those on the right are
+    // not, and some are refined; the modulus is constant or varies.
     constexpr int dim = TypeParam::value;
     for (const std::string material : {"", "set Young's modulus = 2 + x"})
       {

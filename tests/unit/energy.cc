@@ -95,7 +95,7 @@ namespace
           const State<dim> state      = homogeneous(body, 0.4, stress);
           const auto summary = summarize_stress(*body.laws, old_state, state);
 
-          // Von Mises by its formula in components.
+          // The von Mises stress by its formula in components.
           const double s = 1.8;
           const double mises =
             s * std::sqrt(0.5 * (0.5 * 0.5 + 0.9 * 0.9 + 0.4 * 0.4) +
@@ -120,7 +120,7 @@ namespace
                       -0.5 * volume *
                         (inverse(z - old_z) * (stress + old_stress)),
                       1e-13);
-          // The part of strains from nodal forces.
+          // The same with the work of z on strains from nodal forces.
           DistributedVector flow =
                               irreversible_forces(*body.stress_space, state.z),
                             u = body.space->owned_vector(), old_u(u);
@@ -163,7 +163,7 @@ namespace
 
   TYPED_TEST(Energy, MeansWeighVolumesAndMaximaSeeAllCells)
   {
-    // A stress in the right half only, where cells are smaller.
+    // There is a stress in the right half only, where cells are smaller.
     constexpr int dim = TypeParam::value;
     Body<dim>     body(scene<dim>());
     const double  middle = 1.1;
@@ -204,8 +204,8 @@ namespace
     const double normal      = stiffness.stress(yy) * stiffness.stress(yy);
     const double h           = 0.5;
     const double fluctuation = volume * h * h / 12. * (shear + normal);
-    // int x^2 over (0.1, 2.1), int y^2 over (0.2, 1.2), both by the length of
-    // the other sides.
+    // int x^2 over (0.1, 2.1) and int y^2 over (0.2, 1.2), each times the
+    // length of the other sides.
     const double squared =
       shear * 2. * (1.728 - 0.008) / 3. + normal * (9.261 - 0.001) / 3.;
     // Mixed terms vanish: eps_xy and eps_yy are orthogonal.
@@ -216,8 +216,8 @@ namespace
 
 
 
-  // Only laws with an energy of their own have their parameters evaluated for
-  // it: the run that ends at this time needs no viscosity any more.
+  // The energy evaluates parameters only of laws with an energy of their own:
+  // at the end of a run others need not have a viscosity.
   TYPED_TEST(Energy, NeedsNoParametersOfMostLaws)
   {
     constexpr int dim        = TypeParam::value;
@@ -244,19 +244,19 @@ namespace
 
   TYPED_TEST(Energy, LawsAreCheckedAtAllSamples)
   {
-    // The program ends all ranks when one of them refuses; a test cannot.
+    // The program ends all ranks if one refuses, which a test cannot do.
     if (Utilities::MPI::n_mpi_processes(MPI_COMM_WORLD) > 1)
       GTEST_SKIP() << "what is wrong on one rank only is refused there";
     constexpr int dim  = TypeParam::value;
     const auto    make = [](const std::string &law) {
-      // In the last column of cells at x = 1.61 and 1.89.
+      // The Gauss points of the last column of cells are x = 1.61 and 1.89.
       auto body =
         std::make_unique<Body<dim>>(scene<dim>() + subsection("Material", law),
                                     /* at_quadrature_points = */ true);
       body->set_up();
       return body;
     };
-    // At later times, and far from the first samples.
+    // The viscosity is wrong only later, or far from the first samples.
     for (const std::string viscosity :
          {"if(t > 1 && x > 1.8, -1, 1)", "if(t > 1, -1, 1)"})
       {
@@ -267,7 +267,7 @@ namespace
         expect_refusal([&] { body->laws->check(1.5); },
                        "'Material/maxwell/Viscosity' is -1 at x = (");
       }
-    // The modulus with another parameter that depends on time.
+    // Check the modulus also if another parameter depends on time.
     for (const std::string time : {"1", "1 + t"})
       {
         const std::string law = "set Relaxation time = " + time + "\n" +

@@ -22,7 +22,7 @@ namespace
 
 
 
-  /// All steps of a body up to t = 1.
+  /// The energy balance of all steps of a body up to t = 1.
   template <int dim>
   EnergyBalance
   balance_of(SteppingBody<dim> &body)
@@ -55,7 +55,7 @@ namespace
 
   TYPED_TEST(EnergyBalances, IsExactInTheBulk)
   {
-    // Whatever the law and the step size: glued, so that nothing slips.
+    // The large friction bound makes all points stick.
     constexpr int dim = TypeParam::value;
     for (const std::string law : {"elastic", "maxwell", "zener"})
       for (const std::string scheme : {"forward Euler", "backward Euler"})
@@ -104,7 +104,7 @@ namespace
     balance.begin(1.);
     balance.add_step({3., 2.5, 0.25, 0.25});
     EXPECT_EQ(balance.defect(), 0.);
-    // Of 1.5 more, 1 is work of the loads.
+    // The energy grows by 1.5, of which 1 is work of the loads.
     balance.add_mesh_change({3., 4.}, {4.5, 5.});
     EXPECT_EQ(balance.adaptation_energy(), 0.5);
     balance.add_step({4.5, -1., 0., 0.});

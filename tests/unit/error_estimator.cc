@@ -26,7 +26,7 @@ namespace
 
 
 
-  /// All roles and both friction laws, with data of every kind.
+  /// A scene with all boundary roles, both friction laws and all data.
   template <int dim>
   std::string
   many_boundaries(const std::string &material)
@@ -75,7 +75,7 @@ namespace
             if (distorted)
               GridTools::transform(
                 [](Point<dim> x) {
-                  // Flat faces stay where they are.
+                  // The boundary stays flat.
                   const double bump = 0.3 * x[0] * (2. - x[0]) * x[1] *
                                       (1. - x[1]) *
                                       (dim == 3 ? x[2] * (1. - x[2]) * 4. : 1.);
@@ -124,7 +124,7 @@ namespace
 
   TEST(ErrorBudget, SharesAreWhatCostsLeast)
   {
-    // Costs e_h^-d e_k^(-1/p) of all ways to divide the tolerance.
+    // Compare the cost e_h^-d e_k^(-1/p) with that of other shares.
     for (const unsigned int d : {2, 3})
       for (const unsigned int p : {1, 2})
         {
@@ -143,7 +143,7 @@ namespace
 
   TEST(ErrorBudget, TheMeshHasWhatIsLeft)
   {
-    ErrorBudget budget(0.1, 2, 2); // of it 0.02 for time steps
+    ErrorBudget budget(0.1, 2, 2); // of which 0.02 is for time steps
     budget.expect_size(2. / 0.95);
     EXPECT_DOUBLE_EQ(budget.size(1.), 2.);
     EXPECT_DOUBLE_EQ(budget.size(3.), 3.);
@@ -154,7 +154,7 @@ namespace
     estimate.time    = 0.05; // more than its share
     estimate.initial = 0.02;
     EXPECT_DOUBLE_EQ(budget.space(estimate, 2., true), 0.13);
-    estimate.initial = 1.; // there is no point in trying to make up for it
+    estimate.initial = 1.; // too large to make up for
     EXPECT_DOUBLE_EQ(budget.space(estimate, 2., true), 0.08);
   }
 } // namespace

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 
-// Exact solutions: their derivatives, which are differences, against those by
-// hand; errors of states that are known.
+// Derivatives of exact solutions, which are difference quotients, against
+// closed forms.
 
 #include <viscoplastic_contact/scene/exact_solution.h>
 
@@ -12,7 +12,7 @@ namespace
   using namespace Viscoplastic;
   using Side = ExactSolution<2>::Side;
 
-  constexpr double accuracy = 1e-7; // differences promise some 1e-8
+  constexpr double accuracy = 1e-7; // difference quotients have about 1e-8
 
   ExactSolution<2>
   solution()

@@ -18,7 +18,7 @@ namespace
   using namespace Viscoplastic;
   using namespace Viscoplastic::Testing;
 
-  /// Do something in another process; returns whether that has thrown.
+  /// Call @p function in a child process; return whether it has thrown.
   template <typename Function>
   bool
   throws_in_child(const Function &function)
@@ -77,8 +77,8 @@ namespace
 
   TEST(Files, OnlyRegularFiles)
   {
-    // Nothing waits for the other end of a pipe, and what a link leads to stays
-    // as it is.
+    // No call waits for the other end of a pipe, and targets of symbolic links
+    // are not changed.
     const Folder      folder;
     const std::string pipe = folder.path / "pipe", link = folder.path / "link",
                       other = folder.add("other", "of somebody else");
@@ -99,7 +99,7 @@ namespace
                    "'" + pipe + "' cannot be read: it is a pipe.");
     EXPECT_EQ(read_file_if_any(link), "of somebody else");
 
-    // What is written first, and the lock.
+    // The temporary file and the lock must not be links, either.
     const std::string name = folder.path / "a",
                       lock = folder.path / "viscoplastic_contact.lock";
     std::filesystem::create_symlink(other, name + ".part");
@@ -137,7 +137,7 @@ namespace
     {
       DirectoryLock lock;
       lock.acquire(folder.path);
-      lock.acquire(folder.path); // has it
+      lock.acquire(folder.path); // again: no effect
       expect_refusal([&] { DirectoryLock().acquire(folder.path); },
                      "Another run (process " + std::to_string(getpid()) +
                        " on ");
@@ -145,7 +145,7 @@ namespace
     }
     EXPECT_TRUE(is_free());
     EXPECT_TRUE(std::filesystem::is_empty(folder.path));
-    // No lock, and no error, where there is nothing to lock.
+    // An absent directory is neither locked nor an error.
     DirectoryLock().acquire(folder.path / "absent");
   }
 

@@ -64,7 +64,7 @@ namespace
         for (const auto &node : body.space->boundary_nodes())
           {
             const NodalFrame<dim> &frame = body.space->frame(node.frame);
-            // Symmetry at z = 0 takes the rest of the edge's end.
+            // Symmetry at z = 0 also holds the end of the edge.
             const bool at_end = dim == 3 && node.position[dim - 1] == 0.;
             if (on_edge(node.position))
               {
@@ -75,7 +75,7 @@ namespace
                   {
                     const FrictionPlane<dim> &plane = frame.planes[0];
                     EXPECT_EQ(plane.n_tangents, 1u);
-                    // Both pieces rub along the edge: their bounds add up.
+                    // The friction of both pieces along the edge adds up.
                     EXPECT_EQ(
                       std::set<types::boundary_id>(plane.boundary_ids.begin(),
                                                    plane.boundary_ids.end()),
@@ -102,8 +102,8 @@ namespace
 
   TYPED_TEST(Frames, BilateralCornerTakesBothFoundations)
   {
-    // Both normal displacements are prescribed at the corner, not their mean:
-    // the displacement there is the one that has them.
+    // At the corner both normal displacements are prescribed, not a mean, which
+    // determines the displacement there.
     constexpr int dim = TypeParam::value;
     Body<dim>     body(
       corner<dim>() +
@@ -174,7 +174,7 @@ namespace
   TYPED_TEST(Frames, HangingNodesOnAnObliquePlaneKeepTheNormalDisplacement)
   {
     constexpr int dim = TypeParam::value;
-    // Linear in space: hanging nodes can have it exactly.
+    // A displacement that is linear in space is exact at hanging nodes.
     const auto body = rotated_body<dim>(
       tresca + "set Foundation displacement = (0.2 + 0.1*x - 0.3*y)*t");
     const auto d = [](const Point<dim> &x) {
@@ -203,7 +203,7 @@ namespace
       {
         EXPECT_GT(Utilities::MPI::sum(n_hanging, MPI_COMM_WORLD), 0u);
       }
-    // The clamped side, too.
+    // Vertices on the clamped side are exactly at rest.
     for_each_vertex_on(*body, 3, [&](const Point<dim> &, const auto dof) {
       for (unsigned int c = 0; c < dim; ++c)
         EXPECT_EQ(u(dof + c), 0.);
@@ -224,8 +224,7 @@ namespace
     for (const auto i : body->space->relevant)
       EXPECT_NEAR(u(i), back(i), 1e-14);
 
-    // Frames are rotations: in 3D and 2D some node has one, and none changes
-    // lengths.
+    // Frames are rotations: some node is rotated, and no frame changes lengths.
     bool rotated = false;
     for (const auto &node : body->space->boundary_nodes())
       {
@@ -262,12 +261,12 @@ namespace
 
   TYPED_TEST(Frames, LoadsPassFromHangingNodesToTheirMasters)
   {
-    // The work of a load on an admissible displacement does not depend on the
-    // form they have.
+    // The work of a load on an admissible displacement is the same in Cartesian
+    // components and in frames without hanging nodes.
     constexpr int           dim  = TypeParam::value;
     const auto              body = rotated_body<dim>(tresca);
     const DistributedVector u    = body->rough_vector(0.2);
-    // Shares of the owned cells, 1 + dof mod 7 for each owned entry.
+    // The Cartesian load has 1 + dof mod 7 in each owned entry.
     std::vector<double> cartesian(body->space->relevant.n_elements());
     double              work = 0.;
     for (const auto i : body->space->owned)
@@ -298,7 +297,7 @@ namespace
         Body<dim> body(text);
         expect_refusal([&] { body.set_up(); }, motion);
       };
-    // Friction does not hold a body.
+    // Friction alone does not hold a body.
     refuse(
       [](const unsigned int id) {
         return id == 2 ? tresca : std::string("set Role = free");
@@ -312,7 +311,7 @@ namespace
                  "rotation about y");
     refuse([](const unsigned int) { return "set Role = free"; },
            "rotation about z");
-    // One component held at two sides.
+    // One component is held at two sides.
     refuse(
       [](const unsigned int id) {
         return id < 2 ? dim == 2 ? "set Role = displacement\n"
@@ -322,7 +321,7 @@ namespace
                         "set Role = free";
       },
       "leave a rigid motion free: translation along y.");
-    // Enough.
+    // Planes of symmetry in all directions suffice.
     std::string text = box<dim>(2);
     for (unsigned int id = 0; id < 2 * dim; ++id)
       text +=
@@ -335,7 +334,7 @@ namespace
   TYPED_TEST(Frames, RigidBodyModesCostNoEnergy)
   {
     constexpr int dim = TypeParam::value;
-    // No condition but on one corner cell's side: rows far from it are free.
+    // Only one side of a corner cell has conditions: rows far from it are free.
     const auto        body = rotated_body<dim>(coulomb);
     DistributedMatrix matrix;
     assemble_elastic_matrix(*body->space, *body->moduli, false, matrix);
@@ -343,8 +342,8 @@ namespace
     EXPECT_EQ(modes.size(), dim == 2 ? 3u : 6u);
     for (const auto &mode : modes)
       {
-        // Where no neighbor is clamped, K times the mode vanishes: the modes
-        // are zero on excluded components only.
+        // K times a mode vanishes except beside excluded components, on which
+        // modes are zero.
         DistributedVector product = body->space->owned_vector();
         matrix.vmult(product, mode);
         const Tensor<1, dim> up = -body->scene.boundary.at(2).normal;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 
-// One point with friction, against a grid search.
+// The solution at one point with friction, against a grid search.
 
 #include "random.h"
 #include <viscoplastic_contact/base/number_range.h>
@@ -28,7 +28,7 @@ namespace
 
 
 
-  /// The minimizer on the circle of radius bound, by a grid that zooms in.
+  /// The minimizer of dual_energy() with |lambda| = bound, by refined grids.
   Tensor<1, 2>
   best_on_circle(const Tensor<2, 2> &C,
                  const Tensor<1, 2> &q,

@@ -27,7 +27,7 @@ namespace
   TYPED_TEST(FrictionPoints, BoundsAddUpToTheIntegralWithHangingNodes)
   {
     constexpr int dim = TypeParam::value;
-    // Linear in space: two Gauss points integrate rho phi exactly.
+    // rho is linear in space: two Gauss points integrate rho phi exactly.
     const auto body =
       rotated_body<dim>("set Role = contact\nset Friction law = tresca\n"
                         "set Friction bound = (1.5 + 0.2*x - 0.1*y)*t");
@@ -105,8 +105,8 @@ namespace
 
   TYPED_TEST(FrictionPoints, PiecesThatMeetShareTheEdge)
   {
-    // The corner of 150 degrees with bounds 1 and 3: in 3D the edge has the
-    // bounds of both, in 2D nobody has its share.
+    // A corner of 150 degrees with bounds 1 and 3: in 3D its edge has the
+    // bounds of both pieces, in 2D the corner has no friction.
     constexpr int dim = TypeParam::value;
     Body<dim>     body(
       corner<dim>() + boundary(0, tresca) + boundary(1, "set Role = free") +
@@ -135,8 +135,8 @@ namespace
     total  = Utilities::MPI::sum(total, MPI_COMM_WORLD);
     edge   = Utilities::MPI::sum(edge, MPI_COMM_WORLD);
     n_edge = Utilities::MPI::sum(n_edge, MPI_COMM_WORLD);
-    // Sides of length 1 in four cells; lost at the corner is 1/8 a side, and in
-    // 3D what the edge's end at the symmetry plane has, 1/8 of that.
+    // Sides have length 1 and four cells. The corner lacks 1/8 of a side, in 3D
+    // the end of the edge at the symmetry plane 1/8 of that.
     if (dim == 2)
       {
         EXPECT_EQ(n_edge, 0u);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 
-// Solves with friction and large ones with multigrid, by all solvers of the
-// bulk. The direct one runs on one rank only.
+// Solves with friction, and solves of larger problems with multigrid, by all
+// bulk solvers. The direct one runs on one rank only.
 
 #include "bulk_scenario.h"
 #include <viscoplastic_contact/contact/contact_solver.h>
@@ -28,7 +28,7 @@ namespace
     constexpr double        tolerance = 1e-9;
     const BulkScenario<dim> scenario(dim == 2 ? 8 : 3, true);
     const ContactLayout    &face = scenario.face->layout();
-    // The load is a rough one of size 1 a node; so are these bounds.
+    // Scale bounds to the load, which is rough and of size 1 per node.
     auto bounds = scenario.face->bounds(0.5);
     for (double &bound : bounds)
       bound *= dim == 2 ? 20. : 60.;
@@ -46,7 +46,7 @@ namespace
         EXPECT_LE(report.relative_error, tolerance);
         EXPECT_LE(report.iterations, 20u);
 
-        // Equilibrium with the friction forces, whatever the solver says.
+        // Check equilibrium with the friction forces independently.
         DistributedVector residual(scenario.load);
         scenario.matrix.vmult(residual, u);
         residual.sadd(-1., 1., scenario.load);
@@ -71,7 +71,7 @@ namespace
         scenario.face->restriction().add(-1., force, residual);
         EXPECT_LT(residual.l2_norm(), 1e-6 * size);
 
-        // Slip belongs to the displacement.
+        // The slip is that of the displacement.
         DistributedVector moved(u);
         moved -= scenario.start;
         const auto slips = scenario.face->slips(moved, {});
@@ -129,7 +129,7 @@ namespace
 
   TYPED_TEST(FrictionalSolves, SlipOnAFoundationTakesWhatBilateralSlipTakes)
   {
-    // The same system twice: normal components are no unknowns, or blocked.
+    // The systems are the same: normal components are excluded or blocked.
     constexpr int                                    dim = TypeParam::value;
     std::map<std::string, std::vector<unsigned int>> iterations;
     for (const std::string law : {"bilateral", "unilateral"})
@@ -190,8 +190,8 @@ namespace
 
   TYPED_TEST(FrictionalSolves, RoundingOfBlockedForcesIsBlocked)
   {
-    // Beside the space no iteration could reduce it, and one on nothing else
-    // ends in values that are not finite.
+    // No iteration can reduce a residual outside of the unblocked space; one
+    // that has no other part would end in values that are not finite.
     constexpr int           dim = TypeParam::value;
     const BulkScenario<dim> scenario(2, 1, false, "unilateral");
     const FaceRestriction  &restriction = scenario.face->restriction();

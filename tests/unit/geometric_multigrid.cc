@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 
-// Geometric multigrid: its hierarchy of spaces, its iterations on finer and
-// finer meshes, and what a renewal leaves of the former matrix.
+// Geometric multigrid: its hierarchy of spaces, iterations on finer and finer
+// meshes, and renewal for another matrix.
 
 #include <deal.II/dofs/dof_tools.h>
 #include <deal.II/fe/mapping_q1.h>
@@ -23,7 +23,7 @@ namespace
 
 
 
-  /// Points stick within this distance of a vertex of the face.
+  /// A truncation with points that stick within @p radius of a vertex.
   template <int dim>
   FaceTruncation
   sticking_within(const double radius, const BulkScenario<dim> &scenario)
@@ -94,7 +94,7 @@ namespace
           EXPECT_NEAR(interpolated[d], x[first_dof + d], 1e-14);
       }
     Utilities::MPI::sum(n_new, MPI_COMM_WORLD, n_new);
-    // Of meshes of 2, 4 and 8 cells along x.
+    // The meshes have 2, 4 and 8 cells along x.
     EXPECT_EQ(n_new[0], dim == 2 ? 6u : 12u);
     EXPECT_EQ(n_new[0] * dim, scenario.space->n_first_dofs());
     EXPECT_EQ(n_new[0] + n_new[1], dim == 2 ? 15u : 45u);
@@ -106,8 +106,8 @@ namespace
 
   TYPED_TEST(NestedMeshes, IterationsDoNotGrowWithTheMesh)
   {
-    // Nothing sticks, about half of the face, all of it; with one set-up. What
-    // filters a preconditioner for a free face takes 20 more on the last mesh.
+    // No point sticks, about half of them, or all, with one set-up. Filtering a
+    // preconditioner for a free face takes 20 more iterations on the last mesh.
     constexpr int                               dim = TypeParam::value;
     std::map<double, std::vector<unsigned int>> iterations;
     for (const unsigned int n_levels : {1, 2, 3})
@@ -139,7 +139,7 @@ namespace
 
   TYPED_TEST(NestedMeshes, AlgebraicCoarseSolverFollowsTheStickSet)
   {
-    // In 2D a first mesh on which smoothed aggregation does not just factorize.
+    // In 2D the first mesh is too large for aggregation to just factorize.
     constexpr int           dim = TypeParam::value;
     const BulkScenario<dim> scenario(dim == 2 ? 23 : 3, 1);
     const unsigned int      m          = scenario.face->layout().n_dofs();
@@ -164,7 +164,7 @@ namespace
     unsigned int n_direct, n_algebraic;
     EXPECT_FALSE(direct->preconditioner_state());
     EXPECT_FALSE(algebraic->preconditioner_state());
-    // What it was built for last.
+    // The sticking radius of the last set-up.
     double           built_for = -1.;
     constexpr double few_nodes = dim == 2 ? 0.06 : 0.2;
     for (const double radius : {-1., few_nodes, 0.9, 10., few_nodes})
@@ -177,15 +177,15 @@ namespace
         face.add(-1., exact, w);
         EXPECT_LE(std::sqrt(face.dot(w, w)),
                   1e-6 * std::sqrt(face.dot(exact, exact)));
-        // Few nodes more are no reason for a set-up.
+        // A few more nodes that stick cause no new set-up.
         if (built_for != -1. || radius != few_nodes)
           built_for = radius;
         EXPECT_TRUE(is_built_for(*algebraic, built_for));
       }
 
-    // Nor is a truncation that is only tried. Another solver in the same state
-    // does the same, whatever it has done before; one whose state is forgotten
-    // begins anew.
+    // A trial truncation causes no set-up, either. A solver restored to the
+    // same state gives the same results whatever its history; without its state
+    // it sets up anew.
     DistributedVector u(scenario.start);
     algebraic->begin(scenario.load, u)
       ->set_truncation(sticking_within(10., scenario),
@@ -222,7 +222,7 @@ namespace
       return w;
     };
     correction(*renewed);
-    // Another material, of another unit of stress.
+    // Renew with another material and another unit of stress.
     const ElasticModuli<dim> moduli(Stiffness::isotropic(1e9, 0.4));
     assemble_elastic_matrix(*scenario.space, moduli, true, scenario.matrix);
     ASSERT_TRUE(renewed->renew(scenario.matrix));
@@ -238,8 +238,8 @@ namespace
   {
     if (!has_four_doubles())
       GTEST_SKIP() << "products are left to the matrix on this processor";
-    // On oblique planes, with hanging nodes. On several ranks, rows have
-    // columns of nodes that no cell there has.
+    // The scenario has oblique planes and hanging nodes. On several ranks, rows
+    // have columns of nodes that are in no cell of the rank.
     constexpr int     dim = TypeParam::value;
     BulkScenario<dim> scenario(1, dim == 2 ? 4 : 3, true);
     const auto        make = [&scenario](const double largest_shared_part) {

@@ -27,7 +27,7 @@ namespace
 
 
 
-  /// The box, clamped at y = 0, with initial data.
+  /// The box, clamped at y = 0 and free elsewhere, with initial data.
   template <int dim>
   std::string
   scene(const std::string &initial_data, const unsigned int n = 2)
@@ -69,7 +69,7 @@ namespace
 
   TYPED_TEST(InitialState, ProjectionIsOrthogonalInTheStrainProduct)
   {
-    // (eps(u0h - u0), eps(v)) = 0 for all v, by quadrature of its own.
+    // (eps(u0h - u0), eps(v)) = 0 for all v, by a separate quadrature.
     constexpr int dim = TypeParam::value;
     Body<dim>     body(scene<dim>(dim == 2 ?
                                     "set Displacement = x*y^2; y*(x^2 - y)" :
@@ -191,7 +191,7 @@ namespace
     expect_refusal([&] { make_initial_state(*body.stress_space, false); },
                    "The initial displacement contradicts the displacements "
                    "prescribed at t = 0 by 0.25");
-    // Equilibration mends it.
+    // With equilibration the contradiction is no error.
     EXPECT_EQ(message_of([&] { make_initial_state(*body.stress_space, true); }),
               "");
   }
@@ -260,7 +260,7 @@ namespace
     EXPECT_LT(found[0], 2e-4);
     EXPECT_LT(found[1], found[0] / 8.);
 
-    // Wrong by 3 % all over, to the same accuracy.
+    // A stress that is 3 % too large is found to the same accuracy.
     Body<dim> body(airy<dim>(4, 1.03));
     body.set_up();
     ContactState contact;
@@ -348,7 +348,7 @@ namespace
             }
           EXPECT_LT(found[0], 1e-13);
           EXPECT_LT(found[1], 1e-13);
-          // The excess over the ball, 0.05 and 0.15.
+          // The last two exceed the friction ball by 0.05 and 0.15.
           EXPECT_GT(found[2], 1e-3);
           EXPECT_NEAR(found[3] / found[2], 3., 1e-10);
         }
@@ -363,8 +363,8 @@ namespace
     body.set_up();
     ContactState contact;
     const double found = violation(body, contact);
-    // At each point 0.15 m_c is left, relative to (sigma0, eps(v)): the loads
-    // and, on the face, 0.25 m_c.
+    // The excess at each point is 0.15 m_c. It is relative to (sigma0, eps(v)),
+    // which consists of the loads and, on the face, 0.25 m_c.
     const Load<dim>   load     = body.loads->assemble(0.);
     DistributedVector internal = load.values;
     body.set_excluded_to_zero(internal);

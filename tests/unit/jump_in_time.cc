@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 
-// Jumps of data in time, and what is none: kinks, steep ramps, loads that
-// wander.  What data do within time steps, where the run does not see it.
+// Jumps of data in time; kinks, steep ramps and moving loads, which are none;
+// and changes of data within time steps that the ends of steps do not show.
 
 #include <viscoplastic_contact/scene/jump_in_time.h>
 #include <viscoplastic_contact/scene/kinks_in_time.h>
@@ -56,11 +56,11 @@ namespace
             EXPECT_NEAR(*jump, std::stod(t), 2e-10) << text;
           }
       }
-    // Right after the initial state.
+    // The jump is right after the initial state.
     EXPECT_NEAR(jump_of("if(t > 0, 1, 0)").value_or(1.), 0., 1e-11);
-    // On a part of the boundary.
+    // The jump is on a part of the boundary only.
     EXPECT_NEAR(jump_of("if(x < 0.2 && t > 1, 1, 0)").value_or(0.), 1., 1e-11);
-    // In a phase that is a billionth of the others, and for once.
+    // The jump is in a phase a billionth as long as others, or reverts soon.
     EXPECT_TRUE(
       jump_of("if(t < 0.5000000005, 0, 1)", "0.5: 10, 0.500000001: 1, 1: 10"));
     EXPECT_TRUE(jump_of("if(abs(t - 1) < 0.01, 0, 1)"));
@@ -98,7 +98,7 @@ namespace
 
   TEST(UnseenChange, OfDataInTimeWithTheSteps)
   {
-    // Periods that are a step, two, and a third of one.
+    // The data have periods of one, two and a third of a step.
     for (const char *text : {"0.3*sin(2*pi*16*t)",
                              "x*sin(2*pi*8*t)",
                              "1 - cos(2*pi*48*t)",
@@ -106,7 +106,7 @@ namespace
                              "abs(sin(pi*16*t))"})
       for (const std::string phases : {"1: 16, 2: 16", "3: 48", "1e5: 1600000"})
         EXPECT_TRUE(unseen_change_of(text, phases)) << text << ", " << phases;
-    // A blow, and a rest, within one step.
+    // A short pulse, or a short pause, is within one step.
     const auto blow = unseen_change_of("exp(-(100*(t - 0.53))^2)", "1: 10");
     ASSERT_TRUE(blow);
     EXPECT_NEAR(*blow, 0.53, 0.02);
@@ -133,7 +133,7 @@ namespace
                              "x"})
       for (const char *phases : {"1: 3, 2: 3", "1: 4, 2: 4", "2: 50", "2: 6"})
         EXPECT_FALSE(unseen_change_of(text, phases)) << text << ", " << phases;
-    // No value between.
+    // The expression has no finite value in a part of the step.
     EXPECT_FALSE(
       unseen_change_of("if(t > 0 && t < 0.3, 1/max(0, t - 1), t)", "1: 1"));
   }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 
-// Kinks and jumps of data in time, all of them, and what is none.
+// The search finds all kinks and jumps of data in time and nothing else.
 
 #include <viscoplastic_contact/scene/kinks_in_time.h>
 
@@ -53,23 +53,23 @@ namespace
     expect_kinks("if(t < 0.3, t, if(t < 0.71, 0.3, 1.01 - t))", {0.3, 0.71});
     expect_kinks("abs(sin(pi*t/0.4))", {0.4, 0.8, 1.2, 1.6});
     expect_kinks("min(t, 0.007)*exp(x)", {0.007});
-    // Nearer to each other than the windows of a short phase.
+    // These kinks are closer to each other than the windows of a short phase.
     expect_kinks("max(0, 0.01 - abs(t - 1))", {0.99, 1., 1.01});
     expect_kinks("max(0, t - 40)^1.01 + max(0, t - 17)",
                  {17., 40.},
                  false,
                  "100: 10");
-    // A weak one on a curve.
+    // A weak kink is on a curved function.
     expect_kinks("sin(t) + 0.2*abs(t - 0.77)", {0.77});
-    // As well as its values are known there.
+    // Rounding of asin near 1 limits the accuracy.
     const auto folds = kinks_of("asin(sin(pi*t))");
     ASSERT_EQ(folds.size(), 2u);
     EXPECT_NEAR(folds[0].t, 0.5, 1e-8);
     EXPECT_NEAR(folds[1].t, 1.5, 1e-8);
-    // Times that a user writes are these times.
+    // Times given as short decimal numbers are found exactly.
     EXPECT_EQ(kinks_of("abs(t - 0.375)").at(0).t, 0.375);
     EXPECT_EQ(kinks_of("abs(t - 1.1)").at(0).t, 1.1);
-    // So are ends of phases, which need not be short numbers.
+    // So are ends of phases, which need not be short decimal numbers.
     EXPECT_EQ(
       kinks_of("min(t*6, 1)", "0.16666666666666666: 3, 1000: 40").at(0).t,
       1. / 6.);
@@ -79,7 +79,7 @@ namespace
 
   TEST(KinksInTime, JumpsAreFoundAtTheEndsOfWindows)
   {
-    // Times that the search looks at, up to rounding.
+    // The jumps are at points of the search, up to rounding.
     for (unsigned int i = 1; i < 30; ++i)
       if (i != 20)
         {
@@ -111,16 +111,16 @@ namespace
                              "max(t, -1)^3",
                              "max(t - 1, 0)^2",
                              "0*abs(t - 1)",
-                             "t", // nothing to be looked for
+                             "t", // no kink possible
                              "abs(t - 1)*0 + 7"})
       expect_kinks(text, {});
-    // One that wanders has kinks somewhere at all times.
+    // Moving loads have a kink somewhere at all times.
     expect_kinks("abs(x - t/2)", {});
     expect_kinks("max(0, 1 - 20*abs(x - t/2))", {});
-    // The ends of the run are no news.
+    // Kinks at the ends of the run do not count.
     expect_kinks("abs(t)", {});
     expect_kinks("abs(t - 2)", {});
-    // Values that do not exist.
+    // The expression has no value after t = 1.
     expect_kinks("if(t > 1, log(-t), t)", {});
   }
 } // namespace

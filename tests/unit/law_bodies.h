@@ -162,8 +162,8 @@ namespace Viscoplastic::Testing
 
 
 
-  /// What d/dt (stored energy) + dissipation = sigma : eps' lacks, with
-  /// sigma' = E eps' + G.
+  /// The defect of d/dt (stored energy) + dissipation = sigma : eps' for sigma'
+  /// = E eps' + G.
   inline double
   energy_balance_defect(const FlowingBody &body,
                         const Tensor2     &stress,

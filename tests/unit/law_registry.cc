@@ -37,8 +37,8 @@ namespace
 
 
 
-  // What the manual shows is what is compiled here, and the registry looks as
-  // the manual says.
+  // The manual shows the example law that is compiled here, and the registry as
+  // it is.
   TEST(ExampleLaw, IsTheOneInTheManual)
   {
     const auto contents = [](const std::string &name) {
@@ -50,7 +50,7 @@ namespace
     const std::string example = contents("tests/unit/example_law.cc");
     EXPECT_NE(manual.find("```cpp\n" + example + "```\n"), std::string::npos);
 
-    // Each line of the manual's list, the new one excepted.
+    // The registry has each line of the manual's list except the example.
     const std::string registry = contents("source/laws/viscoplastic_law.cc");
     const std::size_t begin    = manual.find("#define VISCOPLASTIC_LAWS");
     ASSERT_NE(begin, std::string::npos);

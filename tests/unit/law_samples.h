@@ -22,7 +22,7 @@ namespace Viscoplastic::Testing
 
 
 
-  /// A body with soft shears in one plane.
+  /// An elastic tensor with soft shears in one plane.
   inline Stiffness
   anisotropic()
   {
@@ -69,7 +69,7 @@ namespace Viscoplastic::Testing
       return stiffness.stress(strain) + z(strain, old_z, k);
     }
 
-    /// kr/r at this stress, or at a small r where nothing flows.
+    /// kr divided by r at this stress, but by 0.1 at least.
     double
     step_size(const double   kr,
               const Tensor2 &stress,
@@ -92,11 +92,11 @@ namespace Viscoplastic::Testing
     LawPoint                         point;
   };
 
-  /// That of laws with history variables.
+  /// The history at the old time, for laws with history variables.
   inline const Tensor2 former_history =
     symmetric(0.3, -0.2, -0.1, 0.15, -0.25, 0.05);
 
-  /// k r of the tests.
+  /// The products k r in tests.
   inline const std::array<double, 6> products = {
     {0.01, 0.1, 1., 10., 100., 1000.}};
 

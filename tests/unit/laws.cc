@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 
-// What all laws must satisfy.
+// Properties that all laws must have.
 
 #include "law_bodies.h"
 #include <viscoplastic_contact/laws/arrhenius.h>
@@ -16,12 +16,12 @@ namespace
   using namespace Viscoplastic;
   using namespace Viscoplastic::Testing;
 
-  /// What every law must satisfy.
+  /// A law in a body, with its bound.
   struct Case
   {
     std::string name;
     FlowingBody body;
-    /// At least r of all stresses; zero where there is no such bound.
+    /// A bound of r for all stresses; zero if there is none.
     double lipschitz;
   };
 
@@ -128,7 +128,7 @@ namespace
             stress.push_back(i == 0 ? Tensor2() : state.stress);
             strain.push_back(state.strain);
           }
-        // Other parameters at the last point.
+        // The parameters of the last point differ.
         points.back().parameters[0] *= 2.;
         std::vector<Flow> flow(points.size());
         body.law->flow(
@@ -152,8 +152,8 @@ namespace
 
 
 
-  /// G is that of the law times exp(-Q/R (1/T - 1/T_L)), and parameters may
-  /// be expressions of T: all bodies here have T = 2.
+  /// G is the law's rate times exp(-Q/R (1/T - 1/T_L)), and parameters may
+  /// depend on T. All bodies here have T = 2.
   TEST(Laws, RatesByTemperature)
   {
     RandomTensors     random;
@@ -216,7 +216,7 @@ namespace
 
 
 
-  // One-sided derivatives at either side of a kink, and close to zero stress.
+  // Tangents are one-sided at kinks; some states are close to zero stress.
   TEST(Laws, RelaxationRateIsAtLeastTheLargestEigenvalue)
   {
     RandomTensors random;
@@ -238,7 +238,7 @@ namespace
 
 
 
-  // The table of the method: in isotropic bodies the rate is the eigenvalue.
+  // Rates by closed form; in isotropic bodies they are the largest eigenvalue.
   TEST(Laws, RelaxationRatesByHand)
   {
     const auto eigenvalue = [](const FlowingBody &body,
@@ -257,7 +257,7 @@ namespace
                  {FlowingBody(norton(0.1, 3., 10.)), 3 * 0.4 * 0.1 * 3 * 4},
                  {FlowingBody(norton(0.1, 3., 1.)), 3 * 0.4 * 0.1 * 3 * 1},
                  {FlowingBody(norton(0.1, 1., 1.)), 3 * 0.4 * 0.1},
-                 // Most where flow goes on, at fixed strain, as it began.
+                 // The rate is largest where flow continues in its direction.
                  {FlowingBody(perzyna(0.7, 0.2, 0.6)),
                   (0.8 + std::sqrt(2. / 3.) * 0.6) / 0.2}};
     for (const auto &c : cases)
@@ -304,8 +304,6 @@ namespace
 
 
 
-  // sigma' = G with the strain held: k steps of Euler multiply the excess of
-  // the deviator by (1 - k r) each, and the pressure stays.
   // The same plane deformation in three coordinate planes, with creep: the
   // stress must be the same up to the names of the axes, in particular the
   // normal stress out of the plane, which creeps although its strain is zero.
@@ -340,8 +338,8 @@ namespace
           const Tensor2 plane = history(c.body, strain_rate);
           EXPECT_EQ(plane[0][2], 0.);
           EXPECT_EQ(plane[1][2], 0.);
-          // Elastically, or if all relaxes alike, it would be
-          // nu (sigma_xx + sigma_yy).
+          // Without flow, or if all modes relax alike, sigma_zz would be nu
+          // (sigma_xx + sigma_yy).
           if (c.body.law->deviatoric_flow())
             {
               EXPECT_GT(std::fabs(plane[2][2] -
@@ -381,7 +379,7 @@ namespace
               EXPECT_LE(std::sqrt(product(Ga - Gb, Ga - Gb)),
                         c.lipschitz * std::sqrt(product(a - b, a - b)) *
                           (1 + 1e-12));
-              // With hardening, G is not monotone where the flow turns back.
+              // With hardening, G is not monotone where flow reverses.
               if (c.name.find("hardening") == std::string::npos)
                 {
                   EXPECT_LE(product(a - b, Ga - Gb), 1e-14);
@@ -392,7 +390,7 @@ namespace
 
 
 
-  // Flow dissipates, and preserves volume where it says so.
+  // Flow dissipates energy, and preserves volume if deviatoric_flow().
   TEST(Laws, Dissipation)
   {
     RandomTensors random;

@@ -28,8 +28,8 @@ namespace
 
 
 
-  /// What this rank has of the values if they are dealt out in turn, each its
-  /// own weight.
+  /// The values of this rank, each its own weight, if all are dealt out to the
+  /// ranks in turn.
   Values
   dealt_out(const std::vector<double> &values)
   {
@@ -63,7 +63,7 @@ namespace
               smallest = std::min(smallest, value);
             }
         EXPECT_GE(chosen, fraction * total);
-        // The four copies stay together, and a per cent may come along.
+        // The four copies stay together, with values up to a per cent smaller.
         double without = 0.;
         for (const double value : values)
           if (value > 1.02 * smallest)
@@ -110,7 +110,7 @@ namespace
 
   TEST(MarkingThreshold, EqualValuesStayTogether)
   {
-    // Also where rounding tells them apart, and on ranks that have none.
+    // Values differ by rounding, and other ranks have none.
     Values mine;
     if (Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) == 0)
       for (unsigned int i = 0; i < 16; ++i)

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 
-// Materials: an elastic tensor and a law.
+// Materials, which consist of an elastic tensor and a law.
 
 #include "refusals.h"
 #include "tensors.h"
@@ -166,7 +166,7 @@ namespace
       "cannot be parsed: there is no 'z'; its variables are x, y, T "
       "and t, and pi and functions such as sin, exp, min and if are "
       "known.");
-    // The handler is at the top again.
+    // The refusal leaves the handler at the top level.
     EXPECT_NO_THROW(Material<3>("Material 7", parameters, prm));
   }
 } // namespace

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 
 // Meshes: ids by expression, refinement at boundaries, normals of pieces, and
-// generators and bodies that are refused. On any number of ranks.
+// generators and bodies that are refused. The tests run on any number of ranks.
 
 #include "meshes.h"
 #include "refusals.h"
@@ -41,7 +41,7 @@ TEST(MeshIds, AreThoseOfThePlaceBeforeItMoves)
 
 
 /// A graded box has the boundaries and the volume of the box, cells of
-/// different sizes, and ids by the place before.
+/// different sizes, and ids by positions before the map.
 TEST(MeshCoordinates, GradeAndMapTheCoarseMesh)
 {
   GeometryParameters geometry = generated("4, 4 : 0, 0 : 1, 1 : true");
@@ -81,7 +81,7 @@ TEST(MeshCoordinates, Refused)
     generated("0, 0 : 0.5 : 1 : 8 : true", "hyper_shell");
   shell.coordinates = "x; 2*y";
   expect_mesh_refused<2>(shell, "meshes with straight edges only");
-  // A body that lies on itself.
+  // The map folds the body onto itself.
   GeometryParameters folded = generated("4, 4 : -1, 0 : 1, 1 : true");
   folded.coordinates        = "x^2; y";
   EXPECT_NE(message_of([&] { make<2>(folded); }), "");
@@ -129,11 +129,11 @@ TEST(BoundaryRefinements, RefineWhatTouches)
 {
   GeometryParameters geometry   = generated("4, 4 : 0, 0 : 1, 1 : true");
   geometry.boundary_refinements = "2: 1";
-  // The lowest row; a further pass takes the eight lowest of these.
+  // The first pass refines the lowest row, the second one its lowest cells.
   EXPECT_EQ(make<2>(geometry)->n_global_active_cells(), 16u + 3 * 4);
   geometry.boundary_refinements = " 2 : 2 ";
   EXPECT_EQ(make<2>(geometry)->n_global_active_cells(), 16u + 3 * 4 + 3 * 8);
-  // Cells that touch a piece in a vertex: five of the lower row.
+  // Cells that touch a piece in a vertex count: five of the lowest row.
   geometry                      = generated("8, 8 : 0, 0 : 1, 1 : true");
   geometry.boundary_ids         = "if(y == 0 && x < 0.5, 9, id)";
   geometry.boundary_refinements = "9: 1";
@@ -142,8 +142,8 @@ TEST(BoundaryRefinements, RefineWhatTouches)
 
 
 
-/// In deal.II's quarter of a ball cells see common lines run different ways;
-/// p4est would refine other cells than deal.II, which ends in a crash.
+/// In deal.II's quarter of a ball, common lines have different orientations in
+/// cells; p4est would refine other cells than deal.II and crash.
 TEST(BoundaryRefinements, OfMeshesWithTurnedLines)
 {
   GeometryParameters geometry;
@@ -166,7 +166,7 @@ TEST(BoundaryRefinements, OfMeshesWithTurnedLines)
       if (cell->is_locally_owned())
         volume += cell->measure();
     }
-  // of the ball, less what is between its facets
+  // an eighth of the ball but for the error of its facets
   EXPECT_NEAR(Utilities::MPI::sum(volume, MPI_COMM_WORLD),
               numbers::PI / 6.,
               0.1 * numbers::PI / 6.);
@@ -178,7 +178,7 @@ TEST(BoundaryRefinements, OfMeshesWithTurnedLines)
             if (std::abs(cell->vertex(v).norm() - 1.) < 1e-12 &&
                 cell->vertex(v)[2] > 0.99)
               cell->set_refine_flag();
-      DoFHandler<3> dof_handler(*mesh); // sees which cells become which
+      DoFHandler<3> dof_handler(*mesh); // follows the change of cells
       mesh->execute_coarsening_and_refinement();
       EXPECT_EQ(mesh->n_global_active_cells() % 7, 4u);
     }
@@ -186,8 +186,8 @@ TEST(BoundaryRefinements, OfMeshesWithTurnedLines)
 
 
 
-/// Where cells of different size meet, the faces of both are the same; and
-/// when they no longer do, the nodes are where the manifold wants them.
+/// Cells of different sizes have the same common faces; when the sizes are
+/// equal again, nodes are on the manifold.
 template <int dim>
 void
 check_hanging_vertices(const std::string &shell)
@@ -264,7 +264,7 @@ TEST(BoundaryRefinements, Refused)
   geometry                    = generated("4, 4 : 0, 0 : 1, 1 : true");
   geometry.global_refinements = 15;
   expect_mesh_refused<2>(geometry, "more than can be numbered");
-  // 5.4e8 unknowns, but 9.7e9 entries
+  // 5.4e8 unknowns can be numbered, but not 9.7e9 matrix entries
   geometry.global_refinements = 12;
   expect_mesh_refused<2>(geometry, "; take at least 5.");
 }
@@ -285,7 +285,7 @@ TEST(PieceNormals, OfFlatPieces)
       EXPECT_NEAR(piece.normal[0], std::cos(a), 1e-14);
       EXPECT_NEAR(piece.normal[1], std::sin(a), 1e-14);
       EXPECT_LT(piece.deviation, 1e-12);
-      // exactly along axes
+      // normals along axes are exact
       if (angle != 30.)
         {
           EXPECT_EQ(piece.normal.norm(), 1.);
@@ -308,7 +308,7 @@ TEST(PieceNormals, OfCurvedPieces)
   EXPECT_NEAR(piece_normal(*make<2>(geometry), 1).deviation,
               45. - 45. / 8,
               1e-10);
-  // All around: no mean.
+  // A piece all around has no mean normal.
   geometry = generated("0, 0 : 0.5 : 1 : 8 : true", "hyper_shell");
   EXPECT_EQ(piece_normal(*make<2>(geometry), 0).deviation, 180.);
 }
@@ -317,8 +317,8 @@ TEST(PieceNormals, OfCurvedPieces)
 
 TEST(PieceNormals, ResolveTinyAngles)
 {
-  // A step of 1e-9 in the middle of the lower side: an arc cosine of the
-  // normals gives zero.
+  // The lower side has a kink of 1e-9 in its middle, for which the arc cosine
+  // between normals is zero.
   const TemporaryFile file(
     msh("1 0 0 0\n2 1 -1e-9 0\n3 2 0 0\n4 2 1 0\n5 1 1 0\n6 0 1 0\n",
         "1 3 0 1 2 5 6\n2 3 0 2 3 4 5\n3 1 1 7 1 2\n4 1 1 7 2 3\n"),
@@ -344,7 +344,7 @@ TEST(MeshChecks, InvertedAndDegenerateCells)
   refused("0.4 0.4"); // not convex
   refused("0.5 0.5"); // a triangle
   refused("1 0");     // two corners at one place
-  // Clockwise is no defect, nor is a slender cell.
+  // Clockwise vertices and slender cells are accepted.
   for (const std::string &text :
        {quadrilateral("1 1"),
         replaced(quadrilateral("1 1"), "1 2 3 4", "4 3 2 1"),
@@ -373,7 +373,7 @@ TEST(MeshChecks, LengthsWhoseCubesVanish)
 
 TEST(MeshChecks, BodyInParts)
 {
-  // Two squares that meet in nodes that are there twice.
+  // Two squares meet in duplicate nodes.
   const TemporaryFile file(msh("1 0 0 0\n2 1 0 0\n3 1 1 0\n4 0 1 0\n"
                                "5 1 0 0\n6 2 0 0\n7 2 1 0\n8 1 1 0\n",
                                "1 3 0 1 2 3 4\n2 3 0 5 6 7 8\n"),
@@ -394,7 +394,7 @@ TEST(MeshChecks, Generators)
                          "The mesh generator 'hyper_doughnut' refuses the "
                          "arguments '1': ");
   expect_mesh_refused<2>(generated("8 : 0"), "refuses the arguments");
-  // which deal.II would take for 4294967294
+  // deal.II would take -2 for 4294967294
   expect_mesh_refused<2>(generated("-2, 2 : 0, 0 : 1, 1 : true"),
                          "'Geometry/Arguments' = -2, 2 : 0, 0 : 1, 1 : true "
                          "asks for -2, 2 cells; possible are 1 to 10000000");
@@ -412,7 +412,7 @@ TEST(MeshChecks, Generators)
 
 TEST(MeshChecks, CellsOfBoxes)
 {
-  // deal.II would take these for lists of step sizes, or not look
+  // deal.II would take these for lists of step sizes, or not check them
   const auto refused = [](const std::string &cells, const std::string &why) {
     const std::string  rest = " : 0, 0 : 2, 1 : true";
     GeometryParameters box  = generated(cells + rest);
@@ -441,8 +441,8 @@ TEST(MeshChecks, CellsOfBoxes)
 
 TEST(MeshChecks, NumbersOfCellsOfGenerators)
 {
-  // Beyond the limits deal.II would ask for all the memory, or for as many
-  // cells as an unsigned -1.
+  // Beyond the limits deal.II would exhaust the memory, or make as many cells
+  // as an unsigned -1.
   const auto refused = [](const std::string &generator,
                           const std::string &arguments,
                           const std::string &n_cells) {
@@ -464,7 +464,7 @@ TEST(MeshChecks, NumbersOfCellsOfGenerators)
   refused("subdivided_hyper_rectangle",
           "5000, 5000 : 0, 0 : 1, 1 : true",
           "2.5e+07");
-  // A power of the dimension.
+  // The number of cells is a power with the exponent dim.
   expect_mesh_refused<2>(generated("100000 : 0 : 1 : true",
                                    "subdivided_hyper_cube"),
                          "asks for 1e+10 cells");
@@ -472,7 +472,7 @@ TEST(MeshChecks, NumbersOfCellsOfGenerators)
                                    "subdivided_hyper_cube"),
                          "asks for 1e+09 cells");
 
-  // What is large is a radius; and arms of a cross may have no cells.
+  // Radii may be large, and arms of a cross may have no cells.
   EXPECT_EQ(make<2>(
               generated("0, 0 : 0, 0 : 1e7 : 2e7 : 8", "eccentric_hyper_shell"))
               ->n_global_active_cells(),
@@ -491,7 +491,7 @@ TEST(MeshChecks, WithoutEnoughMemory)
 #endif
   rlimit before{};
   ASSERT_EQ(getrlimit(RLIMIT_AS, &before), 0);
-  // In pages: what we have, then what is resident.
+  // The first number is the size of the address space in pages.
   std::ifstream statm("/proc/self/statm");
   rlim_t        n_pages = 0;
   if (!(statm >> n_pages))
@@ -502,8 +502,8 @@ TEST(MeshChecks, WithoutEnoughMemory)
   const std::string message = message_of(
     [] { make<2>(generated("3000 : 0 : 1 : true", "subdivided_hyper_cube")); });
   ASSERT_EQ(setrlimit(RLIMIT_AS, &before), 0);
-  // Seen before anything is allocated, and cells themselves would not do. Each
-  // of several ranks has all of the coarse ones.
+  // The refusal comes before anything is allocated, by the memory of cells
+  // alone. Each of several ranks has all coarse cells.
   const unsigned int n_ranks = Utilities::MPI::n_mpi_processes(MPI_COMM_WORLD);
   const double n_bytes = 9e6 * (760. + (n_ranks > 1 ? n_ranks * 650. : 0.));
   EXPECT_NE(message.find("would make about 9e+06 cells and 1.8e+07 unknowns, "

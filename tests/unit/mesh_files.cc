@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 
-// Mesh files: the same meshes in all formats, those of other programs, and what
-// is refused. On any number of ranks.
+// Mesh files: the same meshes in all formats, files of other programs, and
+// files that are refused. The tests run on any number of ranks.
 
 #include "meshes.h"
 #include <viscoplastic_contact/mesh/files/read_mesh_file.h>
@@ -15,7 +15,7 @@ namespace
   const std::string directory =
     std::string(VISCOPLASTIC_SOURCE_DIR) + "/prm/verification/meshes/";
 
-  /// The files with two materials: the same mesh in all formats.
+  /// The files of a mesh with two materials in all formats.
   template <int dim>
   std::vector<std::string>
   two_materials()
@@ -41,7 +41,7 @@ namespace
 
 
 
-  /// A mesh file with that text is refused with the end of the sentence.
+  /// Expect that a mesh file is refused by a sentence that ends in @p reason.
   void
   expect_text_refused(const std::string &text,
                       const std::string &suffix,
@@ -108,10 +108,10 @@ TYPED_TEST(MeshFiles, AreRefinedAndMovedAsOthers)
   expect_measures(volumes(*mesh), {{10, 1.}, {20, 1.}});
   EXPECT_NEAR(areas(*mesh)[4], 1., 1e-12);
   EXPECT_NEAR(areas(*mesh)[3], 2., 1e-12);
-  // 4 was at x = 0 and is at y = 0 now.
+  // Boundary 4 has moved from x = 0 to y = 0.
   EXPECT_NEAR(piece_normal(*mesh, 4).normal[1], -1., 1e-14);
   EXPECT_EQ(mesh->n_global_levels(), 4u);
-  // Hanging nodes on boundary 1, whose faces have several sizes.
+  // Boundary 1 has hanging nodes, so that its faces have several sizes.
   double smallest = 1., largest = 0.;
   for (const auto &cell : mesh->active_cell_iterators())
     if (cell->is_locally_owned())
@@ -199,7 +199,7 @@ TEST(MeshFilesRefused, WithOtherCells)
 TEST(MeshFilesRefused, WithNumbersBeyondMeasure)
 {
   const std::string msh = content(two_materials<2>()[0]);
-  // strtol turns the first two into the ends of its range.
+  // strtol clips the first two numbers to the ends of its range.
   for (const std::string number :
        {"-99999999999999999999999", "99999999999999999999999", "1000000000001"})
     expect_text_refused(replaced(msh, "\n1 0.0", "\n" + number + " 0.0"),
@@ -254,7 +254,7 @@ TEST(MeshFilesRefused, ThatContradictThemselves)
   expect_text_refused(replaced(msh, " 1 1 1 4\n", " 1000000000 1 1 4\n"),
                       ".msh",
                       "the id 1000000000 is not between 0 and 999999999");
-  // Once it has been converted.
+  // This error is found after the conversion of the file.
   expect_text_refused(replaced(content(files[2]), "line 1 4", "line 1 5"),
                       ".ucd",
                       "cannot be read as what contrib/convert_mesh makes of "
@@ -266,8 +266,8 @@ TEST(MeshFilesRefused, ThatContradictThemselves)
 
 TEST(MeshFilesRefused, ThatEndTooEarly)
 {
-  // Wherever a file is cut, it is refused with a sentence or is a mesh; those
-  // that are converted are cut in test_meshes.py.
+  // A truncated file is refused by a sentence or is a mesh; test_meshes.py
+  // truncates files that are converted.
   for (const std::string &name : two_materials<2>())
     {
       if (std::filesystem::path(name).extension() != ".msh")
@@ -290,7 +290,7 @@ TEST(MeshFilesRefused, ThatEndTooEarly)
 
 TEST(MeshFilesOfOthers, Gmsh)
 {
-  // Version 4.0; and lines that are no boundary, but where materials meet.
+  // Format 4.0, with lines between materials, which are no boundary.
   const TemporaryFile file("$MeshFormat\n4 0 8\n$EndMeshFormat\n"
                            "$Comments\nquad and line\n$EndComments\n"
                            "$Entities\n0 2 1 0\n"
@@ -311,7 +311,7 @@ TEST(MeshFilesOfOthers, Gmsh)
 
 TEST(MeshFilesOfOthers, AbaqusWithLinesAndRanges)
 {
-  // As Gmsh writes boundaries, and ABAQUS ranges of elements.
+  // Boundaries as Gmsh writes them, and ranges of elements as ABAQUS does.
   const TemporaryFile file(
     "*Heading\n*Part, name=body\n*Node\n1, 0., 0.\n2, 1., 0.\n3, 2., 0.\n"
     "4, 2., 1.\n5, 1., 1.\n6, 0., 1.\n*Element, type=CPE4R\n"
@@ -334,8 +334,8 @@ TEST(MeshFilesOfOthers, AbaqusWithLinesAndRanges)
 
 TEST(MeshFilesOfOthers, AbaqusWithSetsOfSets)
 {
-  // Each has the one before twice; the first gets the last, too. Copies of
-  // their elements would be 2^40.
+  // Each set contains its predecessor twice, and the first the last one.
+  // Copying elements would make 2^40 of them.
   std::string text =
     "*NODE\n1, 0, 0\n2, 1, 0\n3, 2, 0\n4, 2, 1\n5, 1, 1\n6, 0, 1\n"
     "*ELEMENT, TYPE=CPS4\n11, 1, 2, 5, 6\n12, 2, 3, 4, 5\n"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 
-// Which cells are marked for another mesh, on any number of ranks.
+// Which cells are marked for refinement and coarsening, on any number of ranks.
 
 #include <deal.II/distributed/tria.h>
 #include <deal.II/grid/grid_generator.h>
@@ -39,7 +39,7 @@ namespace
     parameters.minimal_level       = 1;
     parameters.maximal_level       = 2;
     body.triangulation.refine_global(1);
-    // A peak that moves from left to right.
+    // The estimate has a peak that moves from left to right.
     for (const double peak : {0., 0., 2., 2.})
       {
         Vector<double> estimate(body.triangulation.n_active_cells());
@@ -58,7 +58,7 @@ namespace
         EXPECT_EQ(Utilities::MPI::min(coarsest, MPI_COMM_WORLD), 1);
         EXPECT_EQ(Utilities::MPI::max(finest, MPI_COMM_WORLD), 2);
       }
-    // Nothing left to do.
+    // Nothing is left to be refined or coarsened.
     parameters.coarsening_fraction = 0.;
     parameters.maximal_level       = 1;
     Vector<double> estimate(body.triangulation.n_active_cells());
@@ -126,7 +126,7 @@ namespace
     Body<dim>     body(box_with<dim>("set Role = clamped\n"));
     body.triangulation.refine_global(1);
     body.refine_where([](const Point<dim> &x) { return x[0] < 1.; });
-    // The fine half cannot be refined further; the other one has a share of
+    // The fine half cannot be refined further; the coarse half has @p share of
     // the estimate.
     RefinementParameters parameters;
     parameters.refinement_fraction = 1.;
@@ -155,7 +155,7 @@ namespace
     parameters.smallest_share = 0.;
     EXPECT_TRUE(mark(0.001));
 
-    // Coarsening alone: of one family in vain, of all of them not.
+    // Coarsening alone changes the mesh for all families, not for one.
     for (const auto &cell : body.triangulation.active_cell_iterators())
       cell->clear_refine_flag();
     parameters.smallest_share      = 0.02;
@@ -178,7 +178,7 @@ namespace
   TYPED_TEST(Marking, ForAToleranceAsManyAsItTakes)
   {
     constexpr int dim = TypeParam::value;
-    // An estimate of order h that is the larger, the nearer to a corner.
+    // The estimate is of order h and grows toward a corner.
     const auto estimate_on = [](const auto &triangulation) {
       Vector<double> squared(triangulation.n_active_cells());
       for (const auto &cell : triangulation.active_cell_iterators())
@@ -215,7 +215,7 @@ namespace
     EXPECT_LE(ratio, 1.);
     EXPECT_GT(ratio, 0.7);
     EXPECT_GT(n_meshes, 2u);
-    // Within the limits it stays; far below, cells go until it is near again.
+    // Near the tolerance the mesh stays; far below, cells are coarsened.
     const auto     fine    = triangulation.n_global_active_cells();
     Vector<double> squared = estimate_on(triangulation);
     EXPECT_FALSE(
@@ -231,7 +231,7 @@ namespace
         EXPECT_LT(size_of(squared), larger);
       }
     EXPECT_LT(triangulation.n_global_active_cells(), 0.7 * fine);
-    // Where only a few cells may be refined the mesh stays.
+    // If only a few cells may be refined, the mesh stays.
     const auto       n_cells = triangulation.n_global_active_cells();
     constexpr double family  = GeometryInfo<dim>::max_children_per_cell;
     parameters.cell_budget   = n_cells + family - 1;
@@ -242,7 +242,7 @@ namespace
       mark_cells_to_tolerance(triangulation, squared, parameters, 2.));
     for (const auto &cell : triangulation.active_cell_iterators())
       cell->clear_refine_flag();
-    // Where nothing can be refined, coarser cells alone are no help.
+    // If no cell can be refined, none is coarsened either.
     parameters.maximal_level = 0;
     EXPECT_FALSE(
       mark_cells_to_tolerance(triangulation, squared, parameters, 2., any));
@@ -261,7 +261,7 @@ namespace
     std::vector<unsigned int> n_cells;
     for (unsigned int round = 0; round < 8; ++round)
       {
-        // A corner singularity that no mesh resolves.
+        // The estimate has a corner singularity that no mesh resolves.
         Vector<double> estimate(body.triangulation.n_active_cells());
         for (const auto &cell : body.triangulation.active_cell_iterators())
           if (cell->is_locally_owned())
@@ -274,7 +274,7 @@ namespace
         body.triangulation.execute_coarsening_and_refinement();
         n_cells.push_back(body.triangulation.n_global_active_cells());
       }
-    // Beyond the budget only by cells that grade the mesh.
+    // The budget is exceeded only by cells that grade the mesh.
     EXPECT_GT(n_cells.back(), 280u);
     for (const unsigned int n : n_cells)
       EXPECT_LT(n, 315u);
@@ -284,7 +284,7 @@ namespace
 
   TYPED_TEST(Marking, IsThatOfTheWholeMesh)
   {
-    // The same flags on a mesh of all ranks and on one that each has alone.
+    // Flags are the same on a distributed mesh and on a serial one.
     constexpr int dim = TypeParam::value;
     using Mesh        = parallel::distributed::Triangulation<dim>;
     Mesh       shared(MPI_COMM_WORLD), alone(MPI_COMM_SELF);

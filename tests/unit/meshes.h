@@ -16,7 +16,7 @@ namespace Viscoplastic::Testing
   template <int dim>
   using Mesh = parallel::distributed::Triangulation<dim>;
 
-  /// A file with that text, on each rank its own, for the time of the object.
+  /// A file with a given text, separate on each rank, deleted at destruction.
   class TemporaryFile
   {
   public:
@@ -95,7 +95,7 @@ namespace Viscoplastic::Testing
 
 
 
-  /// Measures by id, of the faces at the boundary or of the cells.
+  /// Areas of the boundary by id; volumes() has those of cells.
   template <int dim>
   std::map<unsigned int, double>
   areas(const Mesh<dim> &mesh)

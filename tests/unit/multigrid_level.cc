@@ -20,8 +20,8 @@ namespace
 
 
 
-  /// A few nodes on each rank, each coupled with each other: the identity plus
-  /// a matrix of ones.
+  /// A few nodes on each rank, all of them coupled with each other: the matrix
+  /// is the identity plus a matrix of ones.
   template <int dim>
   struct CoupledNodes
   {
@@ -57,8 +57,8 @@ namespace
 
   TYPED_TEST(Smoother, LowersTheEnergyOfErrorsThatOnlyRanksCouple)
   {
-    // Without what couplings of ranks add to the blocks, or with half of it,
-    // errors that are the same everywhere grow on two and more ranks.
+    // If blocks lacked the couplings of ranks, or half of them, constant errors
+    // would grow on two and more ranks.
     constexpr int           dim = TypeParam::value;
     const CoupledNodes<dim> coupled;
     MultigridLevel<dim>     level(

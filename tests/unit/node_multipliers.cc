@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 
-// The multipliers of single nodes, and what they block.
+// The multipliers of single nodes, and blocked force components.
 
 #include "dense_bulk.h"
 
@@ -18,7 +18,7 @@ namespace
   TEST(ContactSolver, MultipliersOfLeastNormWhereTheyAreNotUnique)
   {
     // At a node with two planes in 3D, four multiplier components make three
-    // forces: along the edge, shares are free.
+    // force components: shares along the edge are not unique.
     Random random(700);
     for (const double degrees : {90., 30., 150.})
       for (unsigned int trial = 0; trial < 40; ++trial)
@@ -27,8 +27,8 @@ namespace
                        std::to_string(trial));
           Problem problem;
           problem.add_node(3, planes_at_an_angle(3, degrees));
-          // A residual that bounds allow: the force of known multipliers.
-          // Half of the trials without clipping.
+          // The residual is the force of known multipliers within the bounds,
+          // in half of the trials without clipping.
           problem.bounds = {1., 1.};
           if (trial % 2 == 1)
             problem.bounds = {random.uniform(0.3, 1.), random.uniform(0.3, 1.)};
@@ -82,8 +82,8 @@ namespace
 
   TEST(ContactSolver, RoundingOfBlockedForcesIsBlocked)
   {
-    // As of the body in equilibrium on an oblique foundation: no iteration on
-    // the space could reduce what is left beside it.
+    // As for a body in equilibrium on an oblique foundation, no iteration can
+    // reduce a residual outside of the unblocked space.
     Problem            problem;
     const Tensor<1, 3> normal({0.7, 0.3, 0.9});
     for (unsigned int node = 0; node < 10; ++node)

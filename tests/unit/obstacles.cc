@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 
-// Obstacles in the solver of contact: unilateral contact and foundations that
-// give way, on small convex problems.
+// Obstacles in the contact solver: unilateral contact and compliant
+// foundations, on small convex problems.
 
 #include "dense_bulk.h"
 #include <viscoplastic_contact/contact/contact_solver.h>
@@ -48,11 +48,11 @@ namespace
                   n_iterations += result.report.iterations;
                   ++n_solves;
 
-                  // From its own solution nothing is left to do.
+                  // A start from the solution needs no iteration.
                   const Result again = solve(
                     problem, condensed, tolerance, result.state, result.u);
                   EXPECT_EQ(again.report.iterations, 0u);
-                  // At corners the sets may be a matter of choice.
+                  // At corners the active sets may not be unique.
                   if (!with_corners)
                     {
                       EXPECT_EQ(again.state.sticks, result.state.sticks);
@@ -72,8 +72,7 @@ namespace
 
   TEST(Obstacles, ObstaclesThatGiveWay)
   {
-    // The duality gap of admissible forces bounds the error, whoever found
-    // them.
+    // The duality gap of any admissible forces bounds the error.
     constexpr double tolerance = 1e-9;
     for (const unsigned int n_tangents : {0, 1, 2})
       for (const bool with_corners : {false, true})
@@ -121,7 +120,7 @@ namespace
                         continue;
                       }
                     ASSERT_LE(force.norm(), problem.bounds[c] * (1. + 1e-14));
-                    // At corners a point is held as well as its node is solved.
+                    // At corners, sticking slips have the error of their node.
                     if (result.state.sticks[c])
                       {
                         EXPECT_LE(slips[c].norm(), 0.1 * tolerance);
@@ -141,8 +140,8 @@ namespace
 
 
 
-  /// Two pieces in unilateral contact with friction meet at an angle at each
-  /// node, and their foundations have come nearer or gone. In 3D at an edge.
+  /// Nodes at which two pieces in unilateral contact with friction meet at an
+  /// angle, in 3D at an edge. Their foundations approach or recede.
   Problem
   pushed_corners(const unsigned int seed,
                  const unsigned int dim,
@@ -151,7 +150,7 @@ namespace
     Random      random(seed);
     Problem     problem;
     const auto  planes = planes_at_an_angle(dim, degrees);
-    const auto &along  = planes[1][0]; // turned by a right angle: the normal
+    const auto &along  = planes[1][0]; // its normal is at a right angle
     for (unsigned int n = 0; n < 3; ++n)
       problem.add_node(dim,
                        planes,
@@ -168,8 +167,8 @@ namespace
 
   TEST(Obstacles, FoundationsThatPushAgainstFriction)
   {
-    // What one piece holds, the foundation of the other moves. Judged by the
-    // duality gap with the slips of all points, those that shall stick as well.
+    // One piece holds a node that the foundation of the other moves. The
+    // duality gap contains the slips of all points, also of sticking ones.
     constexpr double tolerance = 1e-9;
     for (const unsigned int dim : {2, 3})
       {
@@ -216,7 +215,7 @@ namespace
 
   TEST(Obstacles, WholeFaceClosesOrOpensAtOnce)
   {
-    // The force on the obstacles is the excess times the load, down to none.
+    // The force on the obstacles is the excess times the load or none.
     for (const unsigned int n_tangents : {1, 2})
       for (const double excess : {-1e-3, -1e-12, 0., 1e-16, 1e-12, 1e-3})
         for (const bool condensed : {true, false})
@@ -235,8 +234,8 @@ namespace
                 problem.add_node(n_tangents + 1, {rows}, {normal});
               }
             fill_at_random(problem, random, 4, 0.2, 0.4);
-            // All obstacles at the distance at which a given displacement
-            // without slip touches, which the load holds.
+            // All obstacles are just touched by a given displacement without
+            // slip, which is in equilibrium with the load.
             Vector<double>            u(problem.u_prev), force(problem.size());
             std::vector<Tensor<1, 2>> pressure(problem.bounds.size());
             for (unsigned int p = 0; p < problem.bounds.size(); ++p)
@@ -260,14 +259,14 @@ namespace
 
   TEST(Obstacles, StiffnessesOfManyDecades)
   {
-    // A solution as good as it says, up to rounding, or a sentence about that.
+    // A solution is as accurate as reported, up to rounding, or refused.
     constexpr double tolerance = 1e-8;
     unsigned int     n_refused = 0, n_solved = 0;
     for (const double decades : {0., 3., 6., 9.})
       for (unsigned int seed = 0; seed < 100; ++seed)
         for (const bool condensed : {true, false})
           {
-            // The linear solver of the other has no such preconditioner.
+            // The other linear solver has no preconditioner for this.
             if (!condensed && decades > 3.)
               continue;
             SCOPED_TRACE("decades " + std::to_string(decades) + ", seed " +
@@ -304,7 +303,7 @@ namespace
             EXPECT_LE(unbalanced.l2_norm(),
                       1.1 * std::max(result.report.error, tolerance * size) +
                         rounding);
-            // The laws of contact, up to rounding of the way there.
+            // Check the laws of contact up to rounding of displacements.
             const auto   slips = problem.slips(result.u);
             const double way   = 1e-11 * (result.u.linfty_norm() + 1.);
             for (unsigned int c = 0; c < slips.size(); ++c)
@@ -341,9 +340,9 @@ namespace
 
   TEST(Obstacles, SlipThatBeginsBesideOneThatIsUnderWay)
   {
-    // A node of an edge between a rigid and a soft plane with friction on both,
-    // as a solver met it. On the way to its minimum the slip on the rigid one
-    // vanishes, and has to begin anew.
+    // A node on the edge of a rigid and a soft plane with friction on both,
+    // from a run. On the way to the minimum the slip on the rigid plane
+    // vanishes and has to begin again.
     ContactLayout        face;
     ContactLayout::Point point;
     point.node       = 0;
@@ -430,7 +429,7 @@ namespace
                     EXPECT_GE(pressure.slope(k, w), last * (1. - 1e-12));
                   }
                 last = pressure.slope(k, w);
-                // Twice the factor, twice the pressure.
+                // The pressure is proportional to the factor.
                 EXPECT_NEAR(pressure.force(2. * k, w), 2. * p, 1e-13 * p);
               }
         }

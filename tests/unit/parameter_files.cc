@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 
-// Reading of parameter files, their description, and the sentences with which
-// wrong ones are refused.
+// Reading of parameter files, the description of parameters, and the messages
+// that refuse wrong files.
 
 #include "body.h"
 #include "folder.h"
@@ -91,8 +91,8 @@ namespace
 
   TEST(Parameters, TextOfFiles)
   {
-    // Continued lines, comments, tabs, ends of lines of other systems, upper
-    // case, a byte order mark.
+    // The text has continued lines, comments, tabs, CR LF line ends, upper case
+    // and a byte order mark.
     const auto parameters = read_parameters(
       "\xEF\xBB\xBFset Dimension = \\\n 3 # three\nSUBSECTION\tGeometry\r\n"
       "  set\tArguments= 1, \\  \n   2 # the rest\r\nEND\r\n"
@@ -129,7 +129,7 @@ namespace
                    "'" + lost + "', line 1: the included file '" +
                      (folder.path / "nowhere.prm").string() +
                      "' does not exist.");
-    // An included file closes what it opens, and nothing else.
+    // An included file closes the subsections that it opens and no others.
     const std::string open = folder.add("open.prm", "include half.prm\nend");
     folder.add("half.prm", "\nsubsection Time");
     expect_refusal([&] { Parameters p(open); },
@@ -160,7 +160,7 @@ namespace
     parameters.handler.enter_subsection("Geometry");
     EXPECT_EQ(parameters.handler.get("File"), mesh);
 
-    // Otherwise, and on the command line, from the working directory.
+    // Other names, and the command line's, start at the working directory.
     const auto work = std::filesystem::current_path();
     std::filesystem::current_path(folder.path);
     EXPECT_EQ(Parameters({scene}, {"Geometry/File=other.msh"}).geometry.file,
@@ -296,7 +296,7 @@ namespace
             "line 2: 'Geometry/Material ids' has bytes that are no text in "
             "UTF-8");
     refused("include #", "line 1: `include' needs a file after it.");
-    // Materials with numbers and one for all.
+    // Numbered materials exclude one for all cells.
     refused(subsection("Material", "set Law = maxwell") +
               subsection("Material 2", "set Law = elastic"),
             "line 2: 'Material/Law' cannot be set beside 'Material 2'");
@@ -363,7 +363,7 @@ namespace
 
   TEST(Parameters, DamagedFilesAreRefusedOrRead)
   {
-    // Whatever a file contains: it is read, or refused by a sentence.
+    // A file with any content is read, or refused by a sentence.
     const std::string text = describe_parameters();
     const Folder      folder;
     std::mt19937      random(1);
@@ -396,7 +396,7 @@ namespace
           }
       }
     EXPECT_GT(n_refused, 0u);
-    // Long lines, deep nesting, no end of digits.
+    // Long lines, deep nesting and long numbers are refused.
     for (const std::string &damaged :
          {std::string(1000000, ' ') + "x" + std::string(1000000, ' '),
           "set " + std::string(1000000, '=') + "\n",
@@ -427,7 +427,7 @@ namespace
                              "# maxwell: "})
       EXPECT_NE(text.find(part), std::string::npos) << part;
 
-    // Everything has its default but the roles.
+    // All entries but the roles have their defaults.
     const auto         described = read_parameters(text);
     std::ostringstream values, defaults;
     described->handler.print_parameters(values, ParameterHandler::ShortText);
@@ -473,7 +473,7 @@ namespace
     EXPECT_EQ(with.time.stiffness_policy, StiffnessPolicy::backward_euler);
     EXPECT_EQ(with.refinement.strategy, RefinementStrategy::residual);
     EXPECT_EQ(with.step_control.resolve_events, EventResolution::off);
-    // What the user says counts.
+    // Explicit entries take precedence over those that a tolerance implies.
     const Parameters chosen({},
                             {tolerance,
                              "Time/Scheme=forward Euler",

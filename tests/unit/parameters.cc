@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 
-// Expressions, time steps and boundary roles, and the sentences with which
-// wrong ones are refused. Reading of parameter files is in parameter_files.cc.
+// Expressions, time steps and boundary roles, and the messages that refuse
+// wrong ones. Tests of parameter files are in parameter_files.cc.
 
 #include "body.h"
 #include "refusals.h"
@@ -89,7 +89,7 @@ namespace
     EXPECT_EQ(in_the_middle.n, 5u);
     EXPECT_EQ(in_the_middle.t, 1.5);
     EXPECT_EQ(in_the_middle.k, 0.5);
-    // Of equal ones the first; and without walking through all steps.
+    // The first of equal steps counts; the search does not visit all steps.
     EXPECT_EQ(TimeSchedule("2: 1, 4: 1, 5: 2").largest_step().n, 1u);
     const TimeStep last =
       TimeSchedule("1: 999999998, 2: 1, 4: 1").largest_step();
@@ -154,14 +154,14 @@ namespace
       expect_refusal([&] { Expression<2> f(text, "Loads/Body force"); },
                      "The expression '" + text +
                        "' of 'Loads/Body force' cannot be parsed");
-    // z is not known in 2D.
+    // There is no z in 2D.
     expect_refusal([] { Expression<2> f("1 + z", "here"); },
                    "cannot be parsed: there is no 'z'; its variables are x, y "
                    "and t, and pi and functions such as sin, exp, min and if "
                    "are known.");
     expect_refusal([] { Expression<2> f("foo(x)", "here"); },
                    "there is no 'foo'");
-    // What is known, but in the wrong place, is not called unknown.
+    // Known names in a wrong place are not called unknown.
     expect_refusal([] { Expression<2> f("x x", "here"); },
                    "cannot be parsed: Unexpected");
     expect_refusal([] { Expression<2> f("  ", "here"); },
@@ -280,7 +280,7 @@ namespace
     parallel::distributed::Triangulation<2> triangulation(MPI_COMM_WORLD);
     make_mesh(scene.parameters.geometry, triangulation);
     scene.inspect(triangulation);
-    // (0, -1) turned by 30 degrees.
+    // The normal is (0, -1) rotated by 30 degrees.
     EXPECT_NEAR(scene.boundary.at(2).normal[0], 0.5, 1e-14);
     EXPECT_NEAR(scene.boundary.at(2).normal[1], -std::sqrt(0.75), 1e-14);
   }
@@ -302,7 +302,7 @@ namespace
                    "'Boundary 2/Friction bound' is -0.5 at x = (2 0), t = 1; "
                    "it must not be negative.");
 
-    // mu |S|: the sign of S does not matter, that of mu does.
+    // The bound is mu |S|: S may have any sign, mu may not.
     entries.friction_law = find_named(friction_laws(), "coulomb");
     entries.of_laws["Friction coefficient"] = "0.5 - x";
     entries.normal_stress                   = "-3";

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 
-// Names of places: where they come from, what they stand for.
+// Names of boundaries and materials: their sources and their ids.
 
 #include "folder.h"
 #include "refusals.h"
@@ -114,8 +114,8 @@ namespace
 
 
 
-  // Physical groups of Gmsh: entries come first, what is no name stays a
-  // number.
+  // Names of physical groups of Gmsh: names in the scene take precedence, and
+  // numbers as names are ignored.
   TEST(PlaceNames, OfAMeshFile)
   {
     const std::string mesh =
@@ -143,7 +143,7 @@ namespace
           "\nend\nsubsection Boundary 7\nset Name = pad\nend\n");
       },
       "calls boundary 7 'pad', as");
-    // Ids that the scene gives anew are none of the file.
+    // Names of a file do not apply to ids that the scene redefines.
     const PlaceNames others = names_of(mesh, "set Boundary ids = id + 1\n");
     EXPECT_FALSE(others.has("boundary", 0));
     EXPECT_TRUE(others.has("material", 4));

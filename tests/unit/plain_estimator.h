@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
-// The residual estimator as one writes it down: FEInterfaceValues on every
-// face, nothing kept. What ResidualEstimator has to agree with.
+// A plain implementation of the residual estimator by FEInterfaceValues on
+// every face, with which ResidualEstimator has to agree.
 
 #include <deal.II/base/quadrature_lib.h>
 #include <deal.II/fe/fe_interface_values.h>
@@ -23,8 +23,8 @@ namespace Viscoplastic::Testing
 
 
 
-  /// The strain of a displacement gradient, with its trace moved to
-  /// @p dilatation under mean dilatation.
+  /// The strain of a displacement gradient, under mean dilatation with the
+  /// trace @p dilatation.
   template <int dim>
   SymmetricTensor<2, 3>
   strain(const Tensor<2, dim> &gradient,
@@ -134,7 +134,7 @@ namespace Viscoplastic::Testing
             space.scene.material(cell->material_id()).stiffness(cell->center());
       }
 
-    // A rank without cells has an empty z in every scene.
+    // There is z if any rank has it; a rank without cells never does.
     if (Utilities::MPI::max(z.empty() ? 0 : 1, space.communicator) == 1)
       GridTools::exchange_cell_data_to_ghosts<SymmetricTensor<2, 3>,
                                               DoFHandler<dim>>(
@@ -178,7 +178,7 @@ namespace Viscoplastic::Testing
 
 
   /// r . M^-1 r with the acoustic tensor M = nu . E . nu, whose k-th column is
-  /// the traction of the strain that e_k and nu make.
+  /// the traction of the symmetric product of e_k and nu.
   template <int dim>
   double
   compliance_square(const Stiffness      &stiffness,
@@ -201,8 +201,8 @@ namespace Viscoplastic::Testing
 
 
 
-  /// What the data at a boundary point contradict in @p traction = sigma nu:
-  /// zero in the directions in which u is prescribed.
+  /// The residual of @p traction = sigma nu at a boundary point: zero in the
+  /// directions in which u is prescribed.
   template <int dim>
   Tensor<1, dim>
   boundary_residual(const BoundaryCondition<dim> &condition,
@@ -357,8 +357,8 @@ namespace Viscoplastic::Testing
                        interface_values.get_fe_face_values(1),
                        normals,
                        neighbor_traction);
-      // The part of a face that hanging nodes bound is as far from the other
-      // side of the coarse cell as the whole of it.
+      // The width of a coarse cell across a subface is that across the whole
+      // face.
       double area = 0.;
       for (const double weight : interface_values.get_JxW_values())
         area += weight;

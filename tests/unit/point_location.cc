@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 
-// Points are found in one cell of one rank, whatever the number of ranks, and
-// those outside of the mesh at the nearest place on its boundary.
+// Points are found in one cell of one rank for any number of ranks, and points
+// outside of the mesh at the nearest place on its boundary.
 
 #include <deal.II/fe/mapping_q1.h>
 #include <deal.II/grid/grid_tools.h>
@@ -53,7 +53,7 @@ namespace
 
 
 
-  /// Where a point has been found, as all ranks see it.
+  /// The place at which a point has been found, gathered from all ranks.
   template <int dim>
   struct Found
   {
@@ -87,7 +87,7 @@ namespace
       {
         const auto              mesh = locally_refined<dim>(shear);
         std::vector<Point<dim>> points;
-        // Vertices of the coarse mesh are corners of several cells.
+        // Take vertices, which are corners of several cells, and other points.
         for (const auto &vertex : mesh->get_vertices())
           if (points.size() < 5 && vertex.norm() > 0.)
             points.push_back(vertex);
@@ -113,7 +113,7 @@ namespace
           {
             const Found<dim> place = seen_by_all(*mesh, found.points[i]);
             EXPECT_EQ(place.n_ranks, 1);
-            // The distorted body has curved sides, which the mesh has not.
+            // Cells have straight sides where the distorted body is curved.
             if (shear > 0. && found.distances[i] > 0.)
               {
                 EXPECT_LT(found.distances[i], 0.02);
@@ -139,7 +139,7 @@ namespace
     Point<dim>    node, edge, hanging;
     for (unsigned int d = 0; d < dim; ++d)
       node[d] = 0.75;
-    // Between a fine cell on the left and a coarse one on the right.
+    // The point is between a fine cell on the left and a coarse one.
     hanging    = Point<dim>();
     hanging[0] = 0.5;
     hanging[1] = 0.3;
@@ -156,7 +156,7 @@ namespace
     };
     EXPECT_LT((at(0) - expected_node).norm(), 1e-12);
     EXPECT_LT((at(1) - expected_edge).norm(), 1e-12);
-    EXPECT_LT(std::abs(at(2)[0] - 0.4375), 1e-12); // half as wide
+    EXPECT_LT(std::abs(at(2)[0] - 0.4375), 1e-12); // center of the fine cell
     // A neighbor's center has the larger x, whatever its size.
     EXPECT_LT(at(2)[0], hanging[0]);
   }
@@ -199,10 +199,10 @@ namespace
   TYPED_TEST(MeshPoints, AreOnTheBoundaryThatIsAskedFor)
   {
     constexpr int dim = TypeParam::value;
-    // Distorted in space alone: the map bends the lower side of the square.
+    // The mesh is distorted in 3D only: the map bends the square's lower side.
     const auto mesh  = locally_refined<dim>(dim == 3 ? 0.3 : 0.);
     const auto cells = owned_cells<Triangulation<dim>>(*mesh);
-    // In the plane x_1 = 0, which the map leaves flat, and off it.
+    // Points in the plane x_1 = 0, which the map leaves flat, and off it.
     std::vector<Point<dim>> points(3);
     points[0][0] = 0.7;
     points[1][0] = 0.25; // a vertex

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 
-// Errors of quantities of interest: the dual problem tells what a residual does
-// to them, and products of errors are those of the errors. Every test holds on
-// any number of ranks.
+// Errors of quantities of interest: the dual problem gives the change by a
+// residual, and the estimators' products of errors are those of known errors.
+// Every test holds on any number of ranks.
 
 #include <deal.II/grid/grid_tools.h>
 
@@ -43,7 +43,8 @@ namespace
 
 
 
-  /// A change of z by dz is a residual -(dz, eps(.)). Of the body of
+  /// Expect that the dual solution w gives the change of quantities by a change
+  /// dz of z, which is the residual -(dz, eps(.)). The body is that of
   /// SteppingBody with other friction.
   template <int dim>
   void
@@ -89,7 +90,7 @@ namespace
           const bool follow = d.face->has_computed_pressure();
           const auto w =
             dual.solve(bulk, state.contact, follow ? &law : nullptr);
-          // Not the same everywhere, or nothing would move.
+          // dz varies in space; a constant one would move nothing.
           IrreversibleStress dz(state.z.size());
           std::size_t        i = 0;
           for (const auto &cell : d.space.cells)
@@ -122,7 +123,7 @@ namespace
                                        seen) /
                                 std::abs(seen));
         }
-    // What bounds at rest would tell is wrong.
+    // A dual problem with frozen bounds would be wrong.
     if (frozen > 0.)
       {
         EXPECT_GT(frozen, 0.05);
@@ -146,8 +147,8 @@ namespace
 
 
 
-  /// With the friction of the pressure of the step itself: a residual changes
-  /// the bounds of points that slip.
+  /// Where friction follows the pressure of the step itself, a residual changes
+  /// the bounds of slipping points.
   TYPED_TEST(Quantity, DualKnowsThatBoundsFollowThePressure)
   {
     constexpr int dim = TypeParam::value;
@@ -163,11 +164,11 @@ namespace
 
 
 
-  /// Of the interpolant of a field whose second derivatives are constant.
+  /// Products of the errors of interpolants of quadratic fields are exact.
   TYPED_TEST(Quantity, ProductsOfErrorsAreThoseOfSmoothFields)
   {
     constexpr int dim = TypeParam::value;
-    // clamped all around: the errors of the interior count
+    // The body is clamped all around, so that only interior faces count.
     std::string text =
       box<dim>(1) + subsection("Material", "set Law = elastic");
     for (unsigned int id = 0; id < 2 * dim; ++id)
@@ -185,7 +186,7 @@ namespace
             },
             body.triangulation);
         body.set_up();
-        // x^2 + y^2; x^2 - 2 y^2, and a dual one with other factors
+        // xx x^2 + yy y^2 for both fields
         const auto field = [](const Tensor<1, 2> &xx, const Tensor<1, 2> &yy) {
           return [xx, yy](const Point<dim> &x) {
             Tensor<1, dim> u;
@@ -218,7 +219,7 @@ namespace
           }
         const Vector<double> of_a_force =
           estimator.multiply({u, z, {}, nullptr, /* memory = */ 1.}, dual);
-        // Errors -x (h - x)/2 u_xx and so on: a(e_u, e_w) in a cell.
+        // a(e_u, e_w) in a cell with errors such as -x (h - x)/2 u_xx.
         const double mu = 1. / 2.6, lambda = 0.3 / (1.3 * 0.4);
         for (const auto &cell : body.space->cells)
           if (!cell->at_boundary())
@@ -246,8 +247,8 @@ namespace
 
 
 
-  /// Of quadratic fields on boxes, also at the boundary: recovered strains are
-  /// exact.
+  /// Recovered strains of quadratic fields on boxes are exact, also at the
+  /// boundary, and so are products of their errors.
   TYPED_TEST(Quantity, ProductsOfRecoveredErrorsAreThoseOfSmoothFields)
   {
     constexpr int dim = TypeParam::value;
@@ -280,7 +281,7 @@ namespace
                             w = body.interpolate(
                               field({{2., -1.}}, {{1., 0.5}}, {{1., -4.}}));
     const LocalCells<dim> cells(*body.stress_space);
-    // A pressure that varies in cells.
+    // z is a pressure that varies in cells.
     const StressSpace<dim> &samples = *body.stress_space;
     IrreversibleStress      z;
     for (unsigned int c = 0; c < samples.n_cells(); ++c)
@@ -302,9 +303,9 @@ namespace
                      hy = cell->extent_in_direction(1);
         if (cell->center()[0] < 2. * hx) // where u = 0 is prescribed
           continue;
-        // The interpolants have x y, whose divergence varies in a cell and does
-        // no work; that is an error of the method, -K delta_u delta_w, and what
-        // the pressure varies by does none on it, -z : I delta_w/3.
+        // The divergence of the interpolants varies in a cell. Under mean
+        // dilatation that does no work, an error of -K delta_u delta_w and,
+        // with the pressure of z, of -z : I delta_w/3.
         const double expected =
           ((lambda + 2. * mu) * 2. + mu * -1.) * hx * hx / 3. +
           (mu * 1. + (lambda + 2. * mu) * -1.) * hy * hy / 3. -
@@ -315,8 +316,8 @@ namespace
                     1e-9 * cell->measure());
       }
 
-    // What a law takes beyond its tangents works on w, and a step that is half
-    // as long makes half of the deviatoric errors.
+    // The remainder of the law does work on w, and a step that is half as long
+    // has half of the deviatoric errors.
     SymmetricTensor<2, 3> strain;
     strain[0][0] = strain[0][1]        = 1.;
     const SymmetricTensor<2, 3> beyond = samples.moduli(0).stress(strain);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
-// A look at the sentences of errors.
+// Messages of errors.
 
 #include <gtest/gtest.h>
 

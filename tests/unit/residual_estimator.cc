@@ -151,7 +151,7 @@ namespace
             EXPECT_LT(total_estimate(kelly_estimate(*body.space, u),
                                      body.triangulation),
                       1e-13);
-            // Friction is seen.
+            // Without the friction force there is a residual.
             const DistributedVector none = body.space->ghosted_vector();
             EXPECT_GT(total_estimate(
                         residual_estimate(*body.stress_space, u, z, 0., &none),
@@ -194,20 +194,20 @@ namespace
 
 
 
-  /// A body moved by w into the foundation below it, with a pressure p: by how
-  /// much that contradicts the law of the foundation.
+  /// The estimate of a body that is moved by w into the foundation below it,
+  /// with a pressure p that contradicts the law of the foundation.
   TYPED_TEST(Estimate, SeesStatesThatNoFoundationHas)
   {
     constexpr int dim = TypeParam::value;
     struct Case
     {
-      double w, p, nearest_w, nearest_p; // with the same p, the same w
+      double w, p, nearest_w, nearest_p; // by the law for p and for w
     };
     const std::string rigid = "set Contact law = unilateral\n",
                       soft  = "set Contact law = normal compliance\n"
                               "set Compliance = 4\n"
                               "set Compliance exponent = 2\n";
-    // w and p in places of gap and zero; 4 w^2 is 0.01 at 0.05
+    // the compliance law 4 w^2 is 0.01 at w = 0.05
     constexpr double                                             none = 1e10;
     const std::vector<std::pair<std::string, std::vector<Case>>> foundations{
       {rigid,
@@ -281,7 +281,7 @@ namespace
 
 
 
-  /// A kink where the materials meet is no error.
+  /// A kink of the displacement between two materials is no error.
   TYPED_TEST(Estimate, RecoveredStrainOfTwoMaterialsIsThatOfEach)
   {
     constexpr int dim = TypeParam::value;
@@ -317,8 +317,8 @@ namespace
 
 
 
-  /// Of a quadratic displacement the recovered strain is that of the function
-  /// inside, and as far from it as that of the cells at the boundary.
+  /// For a quadratic displacement the recovered strain is exact at inner nodes,
+  /// and has the error of the cells' strains at the boundary.
   TYPED_TEST(Estimate, RecoveredStrainTellsTheError)
   {
     constexpr int    dim = TypeParam::value;
@@ -366,8 +366,8 @@ namespace
           jump[d] = 2. * constant_stress()[0][d];
         const Vector<double> estimate = residual_estimate(
           *body.stress_space, body.space->ghosted_vector(), z, 0., nullptr);
-        // By the width of the cells on either side of the interface, which has
-        // measure 1.
+        // Estimates are by the width of cells on either side of the interface,
+        // which has measure 1.
         double left = 0., right = 0.;
         for (const auto &cell : body.triangulation.active_cell_iterators())
           {
@@ -375,7 +375,7 @@ namespace
             (cell->center()[0] < 1. ? left : right) += value;
             if (std::abs(cell->center()[0] - 1.) > 0.26)
               {
-                // Squares of what rounding leaves of tractions of size 1.
+                // These are squares of the rounding of tractions of size 1.
                 EXPECT_LE(value, 1e-30);
               }
           }
@@ -394,8 +394,8 @@ namespace
 
   TYPED_TEST(Estimate, SeesMaterialInterfacesAcrossRanks)
   {
-    // One strain, two moduli: the traction jumps by eps_xx (lambda + 2 mu) and
-    // each side has its own acoustic tensor.
+    // The strain is uniform and the moduli jump: the traction eps_xx (lambda +
+    // 2 mu) jumps, and each side has its own acoustic tensor.
     constexpr int    dim = TypeParam::value;
     SampledBody<dim> body(box_with<dim>("set Role = clamped\n") +
                           "subsection Material\n"

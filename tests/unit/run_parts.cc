@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 
-// What a run is made of, without the run: when its mesh changes, when it writes
-// checkpoints, and that one brings everything back. On any number of ranks.
+// Parts of a run: when its mesh changes, when it writes checkpoints, and that a
+// checkpoint restores everything. On any number of ranks.
 
 #include "folder.h"
 #include "stepping_body.h"
@@ -48,10 +48,10 @@ namespace
     wanted.wall_time_limit = 100.;
     CheckpointSchedule schedule(wanted);
     schedule.begin_steps(20.);
-    EXPECT_FALSE(schedule.after_step(1, false, 50.).is_late); // 80 at the next
+    EXPECT_FALSE(schedule.after_step(1, false, 50.).is_late); // next end: 80
     EXPECT_FALSE(schedule.after_step(2, false, 74.).is_late); // 98
     EXPECT_TRUE(schedule.after_step(3, false, 88.).is_late);  // 102
-    // No step comes after a short one, either.
+    // A short last step does not change that.
     EXPECT_TRUE(schedule.after_step(4, false, 100.).is_late);
   }
 
@@ -71,7 +71,7 @@ namespace
 
 
 
-  /// The numbers of cells before and after its marks are carried out.
+  /// Change the mesh as marked; return the numbers of cells before and after.
   template <int dim>
   std::pair<unsigned int, unsigned int>
   carry_out(parallel::distributed::Triangulation<dim> &triangulation)
@@ -133,7 +133,7 @@ namespace
           controller.mark_for_step(*body.discretization, end, end, size),
           is_too_coarse);
         EXPECT_EQ(controller.excess() > 1., is_too_coarse);
-        // Nothing is coarsened between the tries of a step.
+        // The mesh is not due for coarsening between tries of a step.
         EXPECT_EQ(controller.is_due(1), !is_too_coarse);
         controller.accept_step();
         EXPECT_TRUE(controller.is_due(1));
@@ -179,13 +179,13 @@ namespace
         }
       return result;
     };
-    // As long as the error falls.
+    // Refinement goes on as long as the error decreases.
     const double error = body.accepted.errors.space;
     for (unsigned int i = 0; i < 6; ++i, body.accepted.errors.space *= 0.9)
       EXPECT_TRUE(refines()) << i;
     EXPECT_EQ(budget.unavoidable, 0.);
     controller.accept_step();
-    // An error that stays is left alone, also by later steps.
+    // An error that does not decrease is accepted, also in later steps.
     body.accepted.errors.space = error;
     for (unsigned int i = 0; i < 3; ++i)
       EXPECT_TRUE(refines()) << i;
@@ -198,7 +198,7 @@ namespace
 
 
 
-  /// A body with what a run keeps of it.
+  /// A body with all that a run writes to checkpoints.
   template <int dim>
   struct Archived : SteppingBody<dim>
   {
@@ -227,7 +227,7 @@ namespace
     const std::string text = maxwell + time("Heun", "1: 8");
     Archived<dim>     first(text);
     first.advance(4);
-    const Folder          folder; // that of rank 0 counts
+    const Folder          folder; // the one of rank 0 is used
     const CheckpointStore store(
       Utilities::MPI::broadcast(MPI_COMM_WORLD, folder.path.string()) +
         "/checkpoint",
@@ -263,7 +263,7 @@ namespace
       EXPECT_EQ(a.state.u.begin()[i], b.state.u.begin()[i]);
     EXPECT_TRUE(b.is_solution);
 
-    // Another scene.
+    // A checkpoint of another scene is refused.
     Archived<dim> other(maxwell + time("Heun", "1: 3"));
     EXPECT_THROW(
       RunArchive<dim>(store, *checkpoint, other.run, other.triangulation),

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
-// A body with fields of stress, and fields that elements or samples carry
-// exactly.
+// A body with fields of stress, and fields that finite elements or samples
+// represent exactly.
 
 #include <deal.II/grid/grid_tools.h>
 

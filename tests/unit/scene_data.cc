@@ -70,7 +70,7 @@ namespace
     EXPECT_NEAR(value(*cube.data->over_boundary("x^2*y + z", 4), 0., 0.),
                 2. / 3.,
                 1e-14);
-    // What is the same everywhere is its own mean.
+    // Data that do not vary in space need no mean.
     EXPECT_NEAR(square.data->area(2), 2., 1e-12);
     EXPECT_NEAR(cube.data->area(4), 2., 1e-12);
     EXPECT_FALSE(square.data->over_boundary("3*t; 2", 2));
@@ -93,11 +93,11 @@ namespace
   {
     const Box         square(2);
     const std::string mean = *square.data->over_boundary("x*t^2", 3);
-    // Exact at the ends of steps, 0.25 apart and then 1, linear between them.
+    // The mean is exact at the ends of steps and linear between them.
     for (const double t : {0., 0.25, 0.5, 0.75, 1., 2., 3.})
       EXPECT_NEAR(value(mean, 0., t), t * t, 1e-13);
     EXPECT_NEAR(value(mean, 0., 2.5), 6.5, 1e-13);
-    // Components without a value keep none.
+    // Components without a value stay without one.
     EXPECT_EQ(*square.data->over_boundary("free; 0*x", 2), "free; 0");
     EXPECT_EQ(*square.data->over_boundary("t; x*0", 2), "t; 0");
   }
@@ -108,12 +108,12 @@ namespace
   {
     const Box square(2);
     EXPECT_NEAR(value(*square.data->over_time("t^3"), 0., 7.), 6.75, 1e-13);
-    // A kink at the end of a phase.
+    // The datum has a kink at the end of a phase.
     EXPECT_NEAR(value(*square.data->over_time("min(t, 1)"), 0., 7.),
                 2.5 / 3.,
                 1e-14);
-    // What changes in space, too, goes on doing so; `t' within other names is
-    // none.
+    // The mean over time still varies in space; the letter t in other names is
+    // not the time.
     const std::string mean = *square.data->over_time("sqrt(x)*t^2 + tan(0)*t");
     for (const double x : {0., 1., 4.})
       EXPECT_NEAR(value(mean, x, 7.), 3. * std::sqrt(x), 1e-13);
@@ -180,9 +180,9 @@ namespace
     };
     const nlohmann::json plain = of(false);
     EXPECT_EQ(plain["dimension"], 2);
-    EXPECT_EQ(plain["cells"], 14); // eight, of which two are four
+    EXPECT_EQ(plain["cells"], 14); // eight, of which two are refined
     EXPECT_NEAR(plain["h"], 0.5, 1e-14);
-    // `automatic' is replaced where that is known.
+    // `automatic' is replaced by the choice if that is known.
     EXPECT_EQ(plain["values"]["Time/Scheme"], "forward Euler");
     EXPECT_EQ(plain["values"]["Mesh refinement/Strategy"], "none");
     EXPECT_EQ(plain["volumetric_integration"], "full");
@@ -217,7 +217,7 @@ namespace
     const Stiffness general          = Stiffness::anisotropic(voigt),
                     nearest          = nearest_isotropic(general);
     const SymmetricTensor<4, 3> rest = general.tensor() - nearest.tensor();
-    // Orthogonal to all isotropic tensors, which these two span.
+    // The rest is orthogonal to all isotropic tensors, spanned by these two.
     const SymmetricTensor<2, 3> identity = unit_symmetric_tensor<3>();
     for (const SymmetricTensor<4, 3> &isotropic :
          {outer_product(identity, identity), deviator_tensor<3>()})

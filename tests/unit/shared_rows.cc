@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 
-// Products with rows that share values.
+// Products with sparse rows that share values.
 
 #include "body.h"
 #include <viscoplastic_contact/linear_solvers/shared_rows.h>
@@ -118,7 +118,7 @@ namespace
     const std::size_t n_blocks =
       Ring<dim>(0.).template shared<double>().n_blocks();
     EXPECT_EQ(n_blocks, Ring<dim>::n_owned * 6);
-    // Two kinds of rows, with more or fewer lower neighbors at the ends.
+    // There are two kinds of rows, with other lower neighbors at the ends.
     EXPECT_LE(count(0.), 20 * 6);
     EXPECT_EQ(count(1e-15), count(0.));
     EXPECT_EQ(count(1e-8), n_blocks);
@@ -215,7 +215,7 @@ namespace
   check_kernels(const double tolerance)
   {
     using Table = RowTable<dim, Number>;
-    // Blocks that lie anywhere: memory is aligned for two doubles only.
+    // Blocks are at any position: memory is aligned for two doubles only.
     std::vector<PackedBlock<dim, Number>> blocks(9);
     for (unsigned int k = 0; k < blocks.size(); ++k)
       for (unsigned int p = 0; p < blocks[k].n_parts; ++p)

@@ -39,34 +39,34 @@ namespace
         const auto kind = [&](const auto... numbers) {
           return choose_bulk_solver(demand(dim, numbers...));
         };
-        // Small ones, unless the mesh changes again.
+        // Small systems: direct, unless the mesh changes again.
         EXPECT_EQ(kind(15000, 30, 500), Kind::direct);
         EXPECT_EQ(kind(1000, 1, 50), Kind::direct);
         EXPECT_EQ(kind(5000, 1, 500), Kind::geometric_multigrid);
-        EXPECT_EQ(kind(5000, 1, 0), Kind::direct); // it has no coarser mesh
+        EXPECT_EQ(kind(5000, 1, 0), Kind::direct); // no coarser mesh
         EXPECT_EQ(kind(5000, 1, 4000),
-                  Kind::direct); // or that one is not small
-        // Two dimensions: a mesh that is kept. Three: multigrid is always
-        // cheaper, unless the body is nearly incompressible.
+                  Kind::direct); // the coarse mesh is not small
+        // Direct in two dimensions for a mesh that is kept. In three, multigrid
+        // is cheaper unless the body is nearly incompressible.
         EXPECT_EQ(kind(100000, 100, 500),
                   dim == 2 ? Kind::direct : Kind::geometric_multigrid);
         EXPECT_EQ(kind(100000, 2, 500), Kind::geometric_multigrid);
         EXPECT_EQ(kind(100000, 100, 500, 0.4999), Kind::direct);
-        // Without levels, in three dimensions: a mesh that is kept and not
-        // large, or a body that is nearly incompressible.
+        // Without levels, direct in three dimensions for a mesh that is kept
+        // and not large, or a body that is nearly incompressible.
         const Kind in_3d = dim == 2 ? Kind::direct : Kind::algebraic_multigrid;
         EXPECT_EQ(kind(100000, 5, 0), in_3d);
         EXPECT_EQ(kind(100000, 50, 0), Kind::direct);
         EXPECT_EQ(kind(160000, 50, 0), in_3d);
         EXPECT_EQ(kind(160000, 50, 0, 0.48), Kind::direct);
-        // The dense matrix of a large face.
+        // The dense matrix of a large face excludes a direct solver.
         EXPECT_EQ(kind(15000, 30, 500, 0.3, 5000), Kind::direct);
         EXPECT_EQ(kind(15000, 30, 500, 0.3, 5001), Kind::geometric_multigrid);
         SolverDemand friction = demand(dim, 15000, 30, 500, 0.49, 1900);
         EXPECT_EQ(choose_bulk_solver(friction), Kind::direct);
         friction.has_friction = true;
         EXPECT_EQ(choose_bulk_solver(friction), Kind::geometric_multigrid);
-        // The memory of the factor.
+        // The memory of the factor excludes a direct solver.
         EXPECT_EQ(kind(2100000, 100, 500, 0.4999), Kind::geometric_multigrid);
         EXPECT_EQ(kind(2100000, 100, 0), Kind::algebraic_multigrid);
       }
@@ -110,7 +110,7 @@ namespace
 
   TEST(SolverChoice, CostsAreThoseOfTheBenchmark)
   {
-    // Seconds a step of benchmarks/step_cost.py at 5e5 and 1.1e5 unknowns.
+    // Seconds per step in benchmarks/step_cost.py, 5e5 and 1.1e5 unknowns.
     EXPECT_NEAR(expected_cost(Kind::direct, demand(2, 500000, 30, 500)).step,
                 0.41,
                 0.01);
@@ -118,10 +118,10 @@ namespace
       expected_cost(Kind::geometric_multigrid, demand(3, 110000, 30, 500)).step,
       0.37,
       0.01);
-    // A hundred unknowns take about as long as ten.
+    // Overhead dominates: a hundred unknowns take about as long as ten.
     EXPECT_LT(expected_cost(Kind::direct, demand(3, 100, 30, 0)).step,
               1.5 * expected_cost(Kind::direct, demand(3, 10, 30, 0)).step);
-    // A factorization costs more than levels do, and fills more memory.
+    // A factorization costs more time and memory than multigrid levels.
     for (const unsigned int dim : {2, 3})
       for (const unsigned int n : {10000, 1000000})
         {
@@ -138,7 +138,7 @@ namespace
 
 
 
-  /// Kept meshes of a body with levels, on which a step has a solve.
+  /// The demand of a kept mesh with levels and one solve per step.
   SolverDemand
   steady(const unsigned int dim, const unsigned int n_dofs)
   {
@@ -152,11 +152,11 @@ namespace
     // (2.3 + 0.001 + 100 (0.37 + 0.0025)) / 4 + 100 17e-6 (50 + 34 log2(4))
     EXPECT_NEAR(expected_seconds(steady(3, 110000), 100., 4), 10.08835, 1e-10);
     EXPECT_NEAR(expected_seconds(steady(3, 110000), 100., 1), 39.551, 1e-10);
-    // 0.35 (1 - 2 nu)^(-1/2) = 24.75 times the iterations.
+    // Iterations are multiplied by 0.35 (1 - 2 nu)^(-1/2) = 24.75.
     SolverDemand rubber       = steady(3, 110000);
     rubber.max_poissons_ratio = 0.4999;
     EXPECT_NEAR(expected_seconds(rubber, 100., 4), 234.528, 1e-3);
-    // A new mesh every fifth step: 20 of them.
+    // The mesh changes every fifth step, 20 times.
     SolverDemand often    = steady(3, 110000);
     often.n_solves        = 10;
     often.solves_per_step = 2;
@@ -179,14 +179,14 @@ namespace
             const auto least = std::min_element(seconds.begin(), seconds.end());
             const unsigned int best = best_ranks(of_scene, 100., 4096);
             EXPECT_EQ(best, 1u << (least - seconds.begin())) << n_dofs;
-            // Falls to the least, rises behind it: from two ranks on, which
-            // all have multigrid.
+            // From two ranks on, which all have multigrid, times decrease to
+            // the least one and increase after it.
             for (auto s = seconds.begin() + 2; s != seconds.end(); ++s)
               EXPECT_EQ(*s < *(s - 1), s <= least) << n_dofs;
             EXPECT_GE(best, before) << n_dofs;
             before = best;
 
-            // No more than there are; no more than are worth it.
+            // Take no more ranks than there are, and none without gain.
             EXPECT_EQ(best_ranks(of_scene, 100., 3),
                       seconds[1] < seconds[0] ? 2 : 1);
             const unsigned int worth = best_ranks(of_scene, 100., 4096, 0.4);

@@ -136,8 +136,8 @@ namespace
 
 
 
-  /// What of the stress on a new mesh does not fit to u and z becomes z as far
-  /// as strains have crept, and in deviators only.
+  /// The mismatch of stress with u and z on a new mesh is added to z in
+  /// proportion to creep, and its deviator only.
   TYPED_TEST(Transfer, CreepTakesItsShareOfAMismatch)
   {
     constexpr int    dim = TypeParam::value;
@@ -159,7 +159,7 @@ namespace
     EXPECT_EQ(state.z, carried);
     EXPECT_TRUE(share_beyond(0.9999 * part, infinite));
     state.z = carried;
-    // Half of the stress, in the energy norm.
+    // Half of the energy norm of the stress.
     const StressSpace<dim> &space  = *body.stress_space;
     double                  square = 0.;
     for (std::size_t c = 0; c < space.n_cells(); ++c)
@@ -178,7 +178,7 @@ namespace
                                   }),
               1e-14);
 
-    // A pressure is left to equilibrium, and elastic strain stays elastic.
+    // Mismatch of pressure does not change z, nor does any mismatch without z.
     const IrreversibleStress before = state.z;
     for (Stress &tensor : stress = state.z)
       tensor += 0.3 * unit_symmetric_tensor<3>();
@@ -191,8 +191,8 @@ namespace
 
 
 
-  /// Jumps between cells become the slopes that they stand for, next to
-  /// hanging nodes and at boundaries, too; what is left of them is an error.
+  /// Jumps between cells become slopes, also next to hanging nodes and at
+  /// boundaries; the remaining jumps are the error.
   TYPED_TEST(Transfer, ChildrenTakeTheSlopesOfNeighbors)
   {
     constexpr int dim = TypeParam::value;
@@ -204,7 +204,7 @@ namespace
         body.refine_where([](const Point<dim> &x) { return x[0] > 0.7; });
         body.set_up();
         const StressSpace<dim> &space = *body.stress_space;
-        // The means of a field, and the error of having no more.
+        // Samples with the cell means of a field, and the error of samples.
         const auto jumps_of = [&](const auto &field) {
           IrreversibleStress z;
           for (const auto &cell : space.space.cells)
@@ -212,7 +212,7 @@ namespace
           return z;
         };
         const auto error = [&](const auto &field, const auto &z) {
-          // At the samples, or where the centers of children are.
+          // Points are samples, or the centers of children.
           const Quadrature<dim> points =
             at_quadrature_points ?
               Quadrature<dim>(QGauss<dim>(2)) :
@@ -285,7 +285,7 @@ namespace
                     [](const Point<dim> &) { return constant_stress(); })),
                   1e-14);
 
-        // Less is lost if fewer families go.
+        // Less is lost if fewer families are coarsened.
         const double allowed = 0.9 * foretold;
         limit_memory_loss(body.triangulation,
                           *body.stress_space,
@@ -300,7 +300,7 @@ namespace
                           2. * foretold);
         EXPECT_EQ(loss(state.z), foretold);
 
-        // Coarser and back again: what has changed.
+        // Coarsen and refine again: the change of z is the loss.
         const auto n_cells = body.triangulation.n_global_active_cells();
         state              = adapt(body, state, -1.).state;
         EXPECT_EQ(body.triangulation.n_global_levels(), 1u);
@@ -336,8 +336,8 @@ namespace
             body.distort();
           body.refine_where([](const Point<dim> &x) { return x[0] > 0.7; });
           body.set_up();
-          // What quadrature points carry exactly, also on coarsening, is
-          // linear on parallelograms; otherwise constants.
+          // Quadrature points carry linear fields exactly on parallelograms,
+          // also in coarsening, otherwise constants.
           const bool linear = at_quadrature_points && !distorted;
           const std::function<Stress(const Point<dim> &)> field =
             [linear](const Point<dim> &x) {

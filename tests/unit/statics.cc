@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 
-// Bodies that only contact holds: whether it can, with the proof.
+// Bodies that only contact holds: whether it can balance loads, with a proof.
 
 #include "random.h"
 #include <viscoplastic_contact/contact/statics.h>
@@ -152,7 +152,7 @@ namespace
         if (!is_coulomb)
           body.bounds_of_pressure.clear();
 
-        // What contact can do, up to the limit of friction; or anything.
+        // The load is that of contact forces within their bounds, or random.
         std::vector<double> load(body.n_motions());
         for (double &work : load)
           work = is_made ? 0. : random.uniform(-1., 1.);
@@ -215,7 +215,7 @@ namespace
 
   TEST(Statics, BlockOnTheGround)
   {
-    // From -1 to 1 on y = 0; the last load is the moment about the origin.
+    // Nodes are from -1 to 1 on y = 0; the last load is the moment about 0.
     RigidBody block(2);
     for (int i = -4; i <= 4; ++i)
       {
@@ -246,11 +246,11 @@ namespace
         EXPECT_FALSE(is_balanced(times({0.50001, -1., 0.}), 0.));
         EXPECT_TRUE(is_balanced(times({0.49, -1., 0.999}), 0.));
         EXPECT_FALSE(is_balanced(times({0.1, -1., 1.00001}), 0.));
-        // The resultant of the loads is beyond the end by little, or by less
-        // than they are known.
+        // The resultant is beyond the end of the block by little, or by less
+        // than the accuracy.
         EXPECT_FALSE(is_balanced(times({0., -1., 1. + 1e-8}), 0.));
         EXPECT_TRUE(is_balanced(times({0., -1., 1. + 1e-10}), 0.));
-        // Friction without end does not keep it from tipping over.
+        // Unlimited friction does not keep the block from tipping over.
         const double infinite = std::numeric_limits<double>::infinity();
         for (const double bound : {infinite, scale * 1e20})
           {
@@ -258,7 +258,7 @@ namespace
             EXPECT_FALSE(is_balanced(times({5., -1., 1.00001}), bound));
           }
       }
-    // What cancels leaves rounding.
+    // Rounding of loads that cancel does not count.
     HeldBody nearly = block.with_load({0., 1e-16, 0.});
     EXPECT_FALSE(
       balance(nearly, block.bounds, block.bounds_of_pressure, accuracy)
@@ -273,9 +273,9 @@ namespace
 
   TEST(Statics, BodySettlesOnSoftGround)
   {
-    // Two springs: each carries what the lever rule says.
+    // Each of two springs carries its part by the lever rule.
     for (const double exponent : {1., 1.5, 10.})
-      for (const double depth : {1e-3, 3.}) // from which it starts
+      for (const double depth : {1e-3, 3.}) // at the start
         {
           RigidBody beam(2);
           for (const double at : {-1., 1.})

@@ -22,7 +22,7 @@ namespace
 
 
 
-  /// A table of a scene with units goes on by the names of its columns.
+  /// A table with units is continued by the names of its columns.
   TEST(Statistics, TablesWithUnitsGoOn)
   {
     const Testing::Folder folder;

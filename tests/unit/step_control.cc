@@ -131,7 +131,7 @@ namespace
 
   TEST(StepControl, StepsFollowTheError)
   {
-    // d = c(t) k^2 with a solution that moves at unit speed: k -> TOL/c.
+    // Errors c(t) k^2 of a solution that moves at unit speed give k = TOL/c.
     const TimeSchedule schedule("10: 10");
     const auto         parameters = with_tolerance(0.1);
     const auto         c = [](const double t) { return t < 5. ? 10. : 1.; };
@@ -147,14 +147,14 @@ namespace
       if (step.t < 4.5)
         k_early = std::max(k_early, step.k);
     EXPECT_NEAR(k_early, 0.01, 0.003);
-    // Few tries are in vain.
+    // Few steps are rejected.
     EXPECT_LT(control.counts().rejected, done.size() / 10);
     EXPECT_EQ(control.counts().unresolved, 0u);
   }
 
 
 
-  /// How many steps were foreseen after each of a run's steps.
+  /// The predicted number of steps after each step, and the actual one.
   struct Foreseen
   {
     std::vector<double> after_step;
@@ -228,8 +228,8 @@ namespace
 
   TEST(StepControl, WhatHappensAtSomeTimesOnlyMayUseMore)
   {
-    // Between 0.3 and 0.4 of 10 the bound of an error in slip grows like k, as
-    // what a step may use does that covers k of the remaining time.
+    // Between t = 0.3 and 0.4 of 10 the bound of an error in slip grows like k,
+    // as does the share of a step that covers k of the remaining time.
     const auto slipped = [](const double t) {
       return 0.2 * std::clamp(t - 0.3, 0., 0.1);
     };
@@ -252,7 +252,7 @@ namespace
 
   TEST(StepControl, AJumpIsPassedWithTheSmallestStep)
   {
-    // An error at t = 0.31 that no step size reduces.
+    // No step size reduces the error at t = 0.31.
     const TimeSchedule schedule("1: 10");
     const auto         parameters = with_tolerance(0.1);
     StepControl control(parameters, StiffnessPolicy::refuse, schedule, 1, 0.);
@@ -296,7 +296,7 @@ namespace
       EXPECT_NEAR(largest(steps(control, 1., no_error)), 0.1, 1e-12);
     }
     {
-      // Errors that are always too large ask for no shorter ones in vain.
+      // Errors that are always too large cause no steps below the smallest.
       parameters.smallest_step = 0.01;
       StepControl control(parameters, StiffnessPolicy::refuse, schedule, 1, 0.);
       const auto  too_large = [](const TimeStep &step) {
@@ -336,7 +336,7 @@ namespace
       return StepErrors{0., step.k, 1.};
     };
     StepControl control(parameters, StiffnessPolicy::refuse, schedule, 1, 0.);
-    // Some of them are there already, up to rounding.
+    // Some of the times are ends of steps already, up to rounding.
     control.land_on({0.777, 1. + 1e-12, 1.3 - 1e-12, 2.}, {0.4});
     const auto            done = steps(control, 2., no_error);
     std::vector<TimeStep> around;
@@ -348,7 +348,7 @@ namespace
       }
     ASSERT_EQ(around.size(), 1u);
     EXPECT_NEAR(around[0].k, 1e-6, 1e-12);
-    // Where fields are written there a step ends in between, too.
+    // Fields may make a step end at the jump itself, which is a kink, too.
     EXPECT_TRUE(control.has_kink_within(0.39, 0.4));
     EXPECT_TRUE(control.is_kink(0.4));
     const auto has = [&](const double t) {
@@ -359,7 +359,7 @@ namespace
     for (const double t : {0.777, 1., 1.3, 2.})
       EXPECT_TRUE(has(t)) << t;
 
-    // Steps of the phases stay.
+    // Without a tolerance the steps of the phases stay.
     StepControl fixed({}, StiffnessPolicy::refuse, schedule, 1, 0.);
     fixed.land_on({0.777}, {0.4});
     EXPECT_EQ(steps(fixed, 2., no_error).size(), 20u);

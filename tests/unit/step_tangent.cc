@@ -16,7 +16,7 @@ namespace
   using namespace Viscoplastic;
   using namespace Viscoplastic::Testing;
 
-  /// With |C - C^T| in the sense of a : C : b.
+  /// The largest entry of C - C^T as a 6 x 6 matrix, relative to |C|.
   double
   asymmetry(const Tensor4 &C)
   {
@@ -105,8 +105,8 @@ namespace
 
 
 
-  // What the interface does for laws that know no better, against what those
-  // with closed forms know.
+  // The interface's general methods for history variables, against closed forms
+  // of laws.
   TEST(BackwardEuler, HistoryByNewtonsMethodAndDifferences)
   {
     RandomTensors random;
@@ -165,7 +165,7 @@ namespace
         EXPECT_EQ(inside, isotropic.tensor());
         EXPECT_LE(
           (outside * direction - 2. * mu / (1. + kr) * direction).norm(), 1e-7);
-        // One of the two on the surface itself.
+        // On the yield surface the tangent is one of the two.
         const Tensor4 on =
           sample.tangent(0.5 / direction.norm() * direction, at_yield, k);
         EXPECT_LE(std::min((on - inside).norm(), (on - outside).norm()), 1e-7);
@@ -189,7 +189,7 @@ namespace
           const Tensor4 definite = definite_tangent(C, sample.stiffness);
           EXPECT_LE(asymmetry(definite), 1e-14) << sample.name;
           EXPECT_GT(spectrum(definite).values[0], 0.) << sample.name;
-          // Its quadratic form is that of C unless C has none that is positive.
+          // It is the symmetric part of C if that is positive definite.
           Tensor4 symmetric_part;
           for (unsigned int i = 0; i < 6; ++i)
             for (unsigned int j = 0; j < 6; ++j)
@@ -201,6 +201,6 @@ namespace
           else
             ++n_changed;
         }
-    EXPECT_GT(n_changed, 0u); // else this tests half of it
+    EXPECT_GT(n_changed, 0u); // both cases occur
   }
 } // namespace

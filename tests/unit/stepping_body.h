@@ -28,7 +28,7 @@ namespace Viscoplastic::Testing
       std::string text;
     };
 
-    /// Another scene on the same mesh.
+    /// A body of another scene on the same mesh.
     explicit SteppingBody(const WholeScene &whole)
       : Body<dim>(whole.text)
     {

@@ -19,10 +19,9 @@ namespace
 
 
 
-  /// A run whose steps may use @p tolerance of a solution of size 2, and whose
-  /// contributions to the error are k^2 times @p rate: the largest sum that
-  /// they come to, and the number of steps. Rates are those at the beginning of
-  /// steps.
+  /// Run to @p tolerance, relative to a solution of size 2, with errors of k^2
+  /// times the @p rate at the beginning of steps. Returns the largest sum of
+  /// errors and the number of steps.
   std::pair<double, unsigned int>
   run_to_tolerance(const double                                 tolerance,
                    const std::function<double(const double t)> &rate)
@@ -55,12 +54,12 @@ namespace
 
   TEST(StepControl, ErrorsOfARunToAToleranceAddUpToLess)
   {
-    // Equal steps would use it up in 10 * 10 / 0.2 = 500.
+    // 10 * 10 / 0.2 = 500 equal steps would use up the tolerance.
     const auto same = run_to_tolerance(0.1, [](const double) { return 1.; });
     EXPECT_LT(same.first, 0.2);
     EXPECT_GT(same.first, 0.1);
     EXPECT_NEAR(same.second, 500., 150.);
-    // Those that cancel may be larger.
+    // Errors that cancel may be larger.
     const auto half =
       run_to_tolerance(0.1, [](const double t) { return t < 5. ? 1. : -1.; });
     EXPECT_LT(half.first, 1.05 * 0.2); // as far as the least rest allows
@@ -76,8 +75,8 @@ namespace
 
   TEST(StepControl, WhatIsFastButSmallHasFewSteps)
   {
-    // In proportion to what steps cover of the time: 0.1 / 2e-4 = 500 of them
-    // before t = 0.1, whose errors are a hundredth of what is allowed.
+    // Shares in proportion to time alone would take 0.1 / 2e-4 = 500 steps
+    // before t = 0.1, with a hundredth of the allowed error.
     const auto [sum, n] = run_to_tolerance(0.1, [](const double t) {
       return t < 0.1 ? 100. : 0.01;
     });
@@ -104,8 +103,8 @@ namespace
         control.repeat();
         const TimeStep again = control.propose(n, t, no_limit);
         EXPECT_EQ(again.k, step.k);
-        // What relaxes on the new mesh makes steps neither be rejected nor
-        // shorter, unless it takes too much of what is left.
+        // Relaxation after a change of mesh neither rejects nor shortens steps
+        // unless it uses too much of the remaining tolerance.
         StepErrors shock = errors;
         shock.indicator  = 0.01;
         EXPECT_TRUE(control.accepts(again, shock, false));

@@ -19,7 +19,7 @@ namespace
     EXPECT_NEAR(stiffness.shear_modulus(), 0.4, 1e-15);
     EXPECT_NEAR(stiffness.bulk_modulus(), 2. / 3., 1e-15);
 
-    // Uniaxial stress is how E and nu are defined.
+    // Uniaxial stress defines E and nu.
     expect_near(stiffness.strain(symmetric(1, 0, 0)),
                 symmetric(1, -0.25, -0.25),
                 1e-14);

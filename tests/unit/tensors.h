@@ -60,7 +60,7 @@ namespace Viscoplastic::Testing
       return t;
     }
 
-    /// With a deviator of this norm.
+    /// A random tensor with a deviator of this norm.
     Tensor2
     with_deviator(const double norm)
     {
@@ -127,7 +127,7 @@ namespace Viscoplastic::Testing
     return matrix;
   }
 
-  /// Without any symmetry, of the size of the isotropic one above.
+  /// An elastic tensor without symmetry, of the size of `stiffness'.
   inline Stiffness
   triclinic()
   {
@@ -142,7 +142,7 @@ namespace Viscoplastic::Testing
 
 
 
-  /// The isotropic one above.
+  /// The tensor `stiffness' given by its matrix.
   inline Stiffness
   as_matrix()
   {

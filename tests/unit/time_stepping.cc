@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 
-// Steps by themselves, without a run: they change nothing but their result,
-// and the schemes agree where they should. Every test holds on any number of
-// ranks.
+// Time steps without a run: they change nothing but their result, and the
+// schemes agree in the limit. Every test holds on any number of ranks.
 
 #include "stepping_body.h"
 #include <viscoplastic_contact/time_stepping/explicit_step.h>
@@ -25,7 +24,7 @@ namespace
   double
   difference(const DistributedVector &a, const DistributedVector &b)
   {
-    // Ghosted vectors have no norms across ranks that are worth their words.
+    // Ghosted vectors have no reliable norms across ranks.
     double largest = 0.;
     EXPECT_EQ(a.locally_owned_size(), b.locally_owned_size());
     for (std::size_t i = 0; i < a.locally_owned_size(); ++i)
@@ -35,7 +34,7 @@ namespace
 
 
 
-  /// Bit by bit.
+  /// Expect that two states are equal bit for bit.
   template <int dim>
   void
   expect_same(const EvaluatedState<dim> &a, const EvaluatedState<dim> &b)
@@ -78,7 +77,7 @@ namespace
           const double   t    = before.state.t;
           const auto     once =
             body.stepper->try_step(before, &rate, {4, t, t + 0.125, 0.125});
-          // Another one between, longer and with other points that slip.
+          // Make another step in between, longer and with other slip.
           body.stepper->method().restore(before, preconditioner);
           const auto other =
             body.stepper->try_step(before, &rate, {4, t, t + 0.6, 0.6});
@@ -97,9 +96,9 @@ namespace
 
   TYPED_TEST(TimeStepping, RejectedStepsLeaveNothing)
   {
-    // The next step is too long for the tolerance. The one that is accepted in
-    // its place is that which would have been without it, and so is what the
-    // linear solver has learnt.
+    // The next step is too long for the tolerance. The accepted step in its
+    // place, and the state of the linear solver, are the same as without the
+    // rejected step.
     constexpr int dim = TypeParam::value;
     for (const std::string scheme : {"Heun", "backward Euler"})
       {
@@ -146,7 +145,7 @@ namespace
     for (const std::string scheme : {"forward Euler", "backward Euler"})
       {
         SCOPED_TRACE(scheme);
-        // Without a judgment there is no estimate to couple a tolerance to.
+        // Steps by hand have no estimate to couple a tolerance to.
         const std::string text =
           maxwell + time(scheme, "1: 8") +
           subsection("Solver", "set Contact tolerance = 1e-10");
@@ -168,7 +167,7 @@ namespace
               any_slips |= !sticks;
           }
         EXPECT_TRUE(by_hand.discretization->face->layout().any(any_slips));
-        // Error estimates are a matter of the judgment that runs add.
+        // Only runs estimate errors.
         by_hand.accepted.errors           = run.accepted.errors;
         by_hand.accepted.state.time_error = run.accepted.state.time_error;
         expect_same(by_hand.accepted, run.accepted);
@@ -179,7 +178,7 @@ namespace
 
   TYPED_TEST(TimeStepping, SchemesAgreeInTheLimit)
   {
-    // One step of size k of both: they differ by k^2 times something.
+    // One step of size k by both schemes differs by O(k^2).
     constexpr int       dim = TypeParam::value;
     std::vector<double> differences;
     for (const double k : {0.1, 0.05, 0.025})
@@ -190,7 +189,7 @@ namespace
             SteppingBody<dim> body(
               maxwell + time(scheme, "1: 8") +
               subsection("Solver", "set Contact tolerance = 1e-12"));
-            // From the same state, which an elastic step makes.
+            // Both start from the same state, that of an elastic step.
             const FlowRate          at_rest = body.rate();
             ExplicitStep<dim>       first(*body.discretization, body.timer);
             const StepSolution<dim> start =
@@ -214,7 +213,7 @@ namespace
                                      &rate,
                                      {2, 0.5, 0.5 + k, k});
             u.push_back(step.end.state.u);
-            // Those of z that the step has solved with are of its end.
+            // The forces of z are those of z at the end of the step.
             DistributedVector missing = step.end.forces.irreversible;
             missing -= irreversible_forces(body.discretization->stress_space,
                                            step.end.state.z);

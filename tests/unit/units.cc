@@ -35,7 +35,7 @@ namespace
 
 
 
-  /// What is left behind the unit of the number at the beginning.
+  /// The text after the first number and its unit.
   std::string
   rest_behind_unit(const std::string &text)
   {
@@ -117,7 +117,7 @@ namespace
     EXPECT_EQ(converted("if(x > 10 m, 7, id)", machine, none),
               "if(x > 10000, 7, id)");
     EXPECT_EQ(converted("x2 + 3*t", rock, length), "x2 + 3*t");
-    // Powers keep their digits where the unit is that of the scene.
+    // Numbers keep their digits if their unit is that of the scene.
     EXPECT_EQ(converted("1e-5 MPa^-5/day", rock, {0., -1., -5.}), "1e-5");
     EXPECT_DOUBLE_EQ(std::stod(
                        converted("1e-5 MPa^-5/day", si, {0., -1., -5.})),
@@ -269,7 +269,7 @@ namespace
                 2e-15,
                 1e-29);
 
-    // The record says it as the scene does, and is that scene.
+    // The record has entries as the scene has written them.
     std::ostringstream record;
     parameters.print(record);
     for (const std::string line : {"set Phases           = 1 year: 4",
@@ -278,7 +278,7 @@ namespace
                                    "set Length = m"})
       EXPECT_NE(record.str().find(line), std::string::npos) << line << " in\n"
                                                             << record.str();
-    // Where nothing has a unit it is that of the handler.
+    // If nothing has a unit, the record is that of the handler.
     const Parameters   bare({}, {"Boundary 0/Role=free"});
     std::ostringstream ours, theirs;
     bare.print(ours);
@@ -297,7 +297,7 @@ namespace
     parameters.print(record);
     EXPECT_EQ(parameters.time.phases, "3: 4");
     EXPECT_EQ(record.str().find("year:"), std::string::npos);
-    // Nor does the dimension of what is overridden count.
+    // The dimension of an overridden entry does not count.
     EXPECT_EQ(Parameters({},
                          with_units(
                            {"Material/norton/Rate factor=1e-5 MPa^-3/day",
@@ -306,7 +306,7 @@ namespace
                 .values()
                 .at("Material/norton/Rate factor"),
               "2");
-    // Wall times need no declaration.
+    // Wall times have units without a declaration.
     EXPECT_EQ(Parameters({}, {"Checkpoint/Wall time limit=1.5 h"})
                 .checkpoint.wall_time_limit,
               5400.);
@@ -339,7 +339,7 @@ namespace
             "a length, but it must be a pure"},
            {"Material/maxwell/Viscosity=3 Pa", "it must be a viscosity"},
            {"Loads/Body force=0; -22 kN/m^2", "it must be a force per volume"},
-           // Of the exponent 3, its default.
+           // The exponent has its default 3.
            {"Material/norton/Rate factor=1e-5 MPa^-5/day",
             "'1e-5 MPa^-5/day' is time^-1 stress^-5, but it must be time^-1 "
             "stress^-3 with 'Exponent' = 3."},
@@ -353,7 +353,7 @@ namespace
                    "`Length', `Time' and `Stress' in `subsection Units'.");
     expect_refusal([] { Parameters({}, {"Units/Length=m"}); },
                    "'Units' has no Time, Stress");
-    // Errors that come later quote what stands in the file.
+    // Later errors quote entries as written in the file.
     const Parameters parameters({},
                                 with_units({"Boundary 1/Traction=0; 1 kPa*q",
                                             "Output/Points=5 mm, 1"}));
@@ -363,7 +363,7 @@ namespace
     EXPECT_EQ(parameters.quote_as_written("'Output/Points' is '0.005, 1'"),
               "'Output/Points' is '5 mm, 1'");
     EXPECT_EQ(parameters.quote_as_written("'0.005, 1'"), "'0.005, 1'");
-    // What takes no units says what it takes.
+    // An entry without units says what it takes.
     expect_refusal(
       [] { Parameters({}, with_units({"Error control/Tolerance=3 m"})); },
       "it must be a number from 0 to 1");

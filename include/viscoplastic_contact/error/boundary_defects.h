@@ -9,47 +9,48 @@
 
 namespace Viscoplastic
 {
-  /// The part of the discretization error of a quantity of interest that comes
-  /// from the boundary (interpolated data, faces opposite each other), which no
-  /// residual contains. Constructed once a mesh; nothing is computed in scenes
-  /// without it.
+  /// Errors of a quantity of interest at the boundary that no residual
+  /// contains: straight sides of cells where the body is curved, and friction
+  /// missing where other conditions hold nodes on Gamma_3. Constructed once per
+  /// mesh; does no work in scenes without such sides or nodes.
   template <int dim>
   class BoundaryDefects
   {
   public:
-    /// @p discretization stays in use. Collective.
+    /// Keeps a reference to @p discretization. Collective.
     explicit BoundaryDefects(const Discretization<dim> &discretization);
 
-    /// What straight sides of cells do where the body is curved, by active
-    /// cell, with the dual solution w: over the volume between the sides and
-    /// the manifold, and with the loads f where they belong, the equations miss
+    /// Return the error by straight sides of cells where the body is curved, by
+    /// active cell, for the dual solution w: the volume between the sides and
+    /// the manifold, and loads f on the manifold, contribute
     ///
     ///     int b . w - sigma : eps(w)
     ///         + int_curved f . w - int_straight f . w.
     ///
-    /// Their sum is the error to leading order. Of meshes from files it is
-    /// zero: they are the geometry. Empty where no side is curved.
+    /// The sum over all cells is the error to leading order. It is zero for
+    /// meshes from files, which are the geometry. Empty if no side is curved.
     Vector<double>
     missing_sides(const State<dim>        &state,
                   const DistributedVector &ghosted_w) const;
 
-    /// The friction that is missing where other conditions hold nodes on
-    /// Gamma_3, by active cell: these have no friction point in that direction,
-    /// and what holds them carries their part of the face. Along a foundation
-    /// that slides beneath them it is the bound times the part of the slip in
-    /// that direction, for the work of friction times the slip. At rest, as on
-    /// a plane of symmetry, a friction force has there what acts on the nodes
-    /// beside it that slip. Empty where no node is held. Collective.
+    /// Return the size of the error by friction missing where other conditions
+    /// hold nodes on Gamma_3, by active cell: such nodes have no friction point
+    /// in the held directions. If the foundation slides beneath a node, the
+    /// missing force is the friction bound times the held part of the slip
+    /// direction; it counts times the held slip for the work of friction, and
+    /// times w for others. At a node at rest, as on a plane of symmetry, a
+    /// friction force misses what acts on slipping nodes beside it. Empty if no
+    /// node is held. Collective.
     Vector<double>
     held_friction(const State<dim>         &state,
                   const QuantityOfInterest &quantity,
                   const DistributedVector  &ghosted_w) const;
 
   private:
-    /// A quadrature point of a straight side, and where it is on the manifold.
+    /// A quadrature point of a straight side and its image on the manifold.
     struct SidePoint
     {
-      std::size_t                   cell; // of the owned ones
+      std::size_t                   cell; // index of the owned cell
       const BoundaryCondition<dim> *condition;
       std::array<Point<dim>, 2>     x; // straight, curved
       std::array<Tensor<1, dim>, 2> normal;
@@ -63,14 +64,14 @@ namespace Viscoplastic
     struct HeldNode
     {
       unsigned int                  active_cell;
-      std::size_t                   first; // entry among the relevant ones
+      std::size_t                   first; // of its relevant dofs
       Point<dim>                    position;
       double                        area;
       const BoundaryCondition<dim> *condition;
       Tensor<1, dim>                normal;
-      /// Projects on the tangential directions in which it is held.
+      /// Projects on the tangential directions in which the node is held.
       Tensor<2, dim> held;
-      /// The first entries of the vertices of the face.
+      /// The first relevant dofs of the face's vertices.
       std::vector<std::size_t> vertices;
     };
 
@@ -82,7 +83,7 @@ namespace Viscoplastic
     const Discretization<dim> &discretization;
     std::vector<SidePoint>     side_points;
     std::vector<HeldNode>      held_nodes;
-    /// Whether any rank has them.
+    /// Whether any rank has side points or held nodes.
     bool any_sides, any_held_nodes;
   };
 } // namespace Viscoplastic

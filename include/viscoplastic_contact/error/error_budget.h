@@ -13,15 +13,15 @@ namespace Viscoplastic
 
   /// How much of the tolerance of a run each cause of errors may use.
   ///
-  /// A run costs about e_h^-d e_k^(-1/p) to have the error e_h of the mesh, of
-  /// first order, in d dimensions, and e_k of time steps of order p. With their
-  /// sum given it costs least where e_k : e_h = 1/p : d.
+  /// In d dimensions, a run with the error e_h of the mesh, of first order, and
+  /// e_k of time steps of order p costs about e_h^-d e_k^(-1/p). For a given
+  /// sum of both the cost is least if e_k : e_h = 1/p : d.
   class ErrorBudget
   {
   public:
-    /// The largest share of the initial data, which one mesh has to resolve.
+    /// The largest share of the error of the initial data on the first mesh.
     static constexpr double initial_share = 0.25;
-    /// The share of what coarser meshes take from z, over the run.
+    /// The share of the error of z by coarsening, over the whole run.
     static constexpr double transfer_share = 0.1;
     /// The least share of the tolerance that is left to the mesh, however much
     /// the other errors take.
@@ -39,7 +39,7 @@ namespace Viscoplastic
     static std::optional<ErrorBudget>
     of_run(const Parameters &parameters);
 
-    /// The errors that the tolerance is for.
+    /// The errors whose sum the tolerance bounds.
     const ErrorParts &
     errors(const ErrorEstimate &estimate) const
     {
@@ -47,7 +47,7 @@ namespace Viscoplastic
                            estimate;
     }
 
-    /// The size of the solution in a state.
+    /// The energy norm, or the absolute value of the quantity, in a state.
     double
     size(const ErrorEstimate &estimate) const
     {
@@ -56,23 +56,23 @@ namespace Viscoplastic
     }
 
     /// Set the expected size of the solution (energy norm, or value of the
-    /// quantity) to that @p of_coarse_run, which may be too large.
+    /// quantity) to 0.95 of that @p of_coarse_run, which may be too large.
     void
     expect_size(const double of_coarse_run)
     {
       expected_size = 0.95 * of_coarse_run;
     }
 
-    /// The largest size of the run, as far as it can be expected; @p so_far
-    /// that of the steps up to now.
+    /// The expected largest size of the solution in the run; @p so_far: the
+    /// largest size in the steps up to the present one.
     double
     size(const double so_far) const
     {
       return std::max(expected_size, so_far);
     }
 
-    /// The share of the tolerance for the error of the initial data, absolute;
-    /// zero if nothing can be said before the first step.
+    /// The absolute error that the initial data may have; zero if nothing is
+    /// known before the first step, as for a quantity.
     double
     initial() const
     {
@@ -80,7 +80,7 @@ namespace Viscoplastic
     }
 
     /// The error that the next change of the mesh may make by coarsening z, in
-    /// the energy norm: half of what is left.
+    /// the energy norm: half of what is left of its share.
     double
     transfer(const ErrorEstimate &accepted, const double size) const;
 

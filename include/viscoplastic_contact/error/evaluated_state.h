@@ -12,24 +12,24 @@
 
 namespace Viscoplastic
 {
-  /// A state with what has been evaluated of it. A step leads from one of
-  /// these, which it leaves alone, to another one.
+  /// A state with its forces, rates and error estimates. A step leads from one
+  /// evaluated state, which it does not change, to another one.
   template <int dim>
   struct EvaluatedState
   {
     State<dim>  state;
     Forces<dim> forces;
-    /// G at the state; absent where nobody has asked for it yet.
+    /// G at the state; absent until it is needed.
     std::optional<FlowRate> rate;
     /// The error in space; empty where the scene asks for no estimate.
     SpaceEstimate space_estimate;
     /// The error by its causes; zero where the scene asks for no estimate.
     ErrorEstimate errors;
-    /// Whether u solves the step of this state on the present mesh: neither
-    /// initial data do nor what has been carried over from another mesh.
+    /// Whether u solves the step of this state on the present mesh; false for
+    /// initial data and for a state transferred from another mesh.
     bool is_solution = false;
-    /// Whether the slip of its step goes on in the next one: not that of the
-    /// first step on a new mesh, which brings the body into equilibrium there.
+    /// Whether the slip rate of its step is comparable with that of the next
+    /// one; false on a new mesh, whose first step restores equilibrium.
     bool has_slip_rate = true;
     /// The report of the solve that gave u, which may be that of an earlier
     /// step.

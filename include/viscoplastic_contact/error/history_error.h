@@ -7,14 +7,14 @@
 
 namespace Viscoplastic
 {
-  /// What z' = G by cell means leaves out in each unit of time,
+  /// Return the error per unit of time by evaluating z' = G at cell means,
   ///
   ///     (int E^-1 d : d)^{1/2},   d = G'(P0 sigma_h) (sigma_h - P0 sigma_h),
   ///
-  /// with the derivative of G in the direction of what varies in a cell around
-  /// its mean P0. That does not flow; in long creep it carries loads that it
-  /// should not, which u_h does not show: the body as a whole is too stiff.
-  /// Then it is large against the mean, and G itself there would say nothing.
+  /// where P0 takes cell means. The variation of the stress in a cell does not
+  /// flow; in long creep it carries loads that should relax, and the body as a
+  /// whole is too stiff, which u_h does not show. G' is used since the
+  /// variation is then large against the mean, where G itself says nothing.
   /// Collective.
   template <int dim>
   double

@@ -7,36 +7,35 @@
 
 namespace Viscoplastic
 {
-  /// z and sigma as cells should pass them on to their children.
+  /// z and sigma with reconstructed slopes, for the children of refined cells.
   ///
-  /// In a bilinear displacement a strain varies across its own direction only,
-  /// and the history follows it: between cells z jumps by what is missing.
-  /// Children that inherit these jumps keep them, since what has crept stays,
-  /// and no mesh mends that; they would be refined along the edges of cells
-  /// that have long gone. But means of cells are more accurate than what varies
-  /// within them, so that the slopes of z in a cell follow from the means of
-  /// its neighbors in the same material, by least squares. The mean of a cell
-  /// stays, and so does a slope in whose direction there is no neighbor.
+  /// The strains of a bilinear displacement lack the variation along their own
+  /// direction, and so does the irreversible stress z: it jumps between cells.
+  /// Children that inherit these jumps keep them, since creep does not revert,
+  /// and the mesh would be refined along edges of former cells. Cell means are
+  /// more accurate than variations within cells. Therefore the slopes of z in a
+  /// cell are fitted by least squares to the means of its neighbors of the same
+  /// material. The mean of a cell stays, and so does a slope in whose direction
+  /// there is no neighbor.
   ///
-  /// sigma goes the same way, but by |sigma|/|z| only where that is less than
-  /// one: in long creep the stress has relaxed to what makes strains of the
-  /// present mesh flow, and one that is smoother would begin with a fast
-  /// transient.
+  /// The correction of sigma is scaled by |sigma|/|z| where that is below one:
+  /// in long creep the stress has relaxed to one that makes strains of the
+  /// present mesh flow, and a smoother one would begin with a fast transient.
   struct HistoryReconstruction
   {
     /// Reconstructed z and stress at the samples of all owned cells; if samples
     /// are cell means, at the centers of the children that the cells would
     /// have.
     IrreversibleStress z, stress;
-    /// What is wrong in z in each active cell, (int E^-1 e : e), zero on cells
-    /// of other ranks. As it was, e is what the slopes have changed;
-    /// with the new ones it is estimated by the jumps to the neighbors that are
-    /// left. The way with the smaller error has been taken.
+    /// The squared error int E^-1 e : e of z by active cell, zero on cells of
+    /// other ranks. For old slopes, e is their correction; for new ones it is
+    /// estimated by the remaining jumps between neighbors. A cell gets the
+    /// slopes with the smaller error.
     Vector<double> squared_error;
   };
 
-  /// @p z and @p stress (sigma_h), which gets slopes where z does, at the
-  /// samples of owned cells. Collective.
+  /// Reconstruct @p z and @p stress (sigma_h) from samples of owned cells; the
+  /// stress gets new slopes in the cells in which z does. Collective.
   template <int dim>
   HistoryReconstruction
   reconstruct_history(const StressSpace<dim>   &stress_space,

@@ -7,24 +7,24 @@
 
 namespace Viscoplastic
 {
-  /// Squared jumps of the displacement gradient, weighted by the cell size
-  /// (Kelly, Gago, Zienkiewicz and Babuska, Int. J. Numer. Methods Eng. 19,
-  /// 1983); the layout of ResidualEstimator::estimate().
+  /// Return squared jumps of the displacement gradient, weighted by the cell
+  /// size (Kelly, Gago, Zienkiewicz and Babuska, Int. J. Numer. Methods Eng.
+  /// 19, 1983), by active cell; zero on cells of other ranks. Collective.
   template <int dim>
   Vector<double>
   kelly_estimate(const AdmissibleSpace<dim> &space,
                  const DistributedVector    &ghosted_u);
 
-  /// The norm of the strains at the midpoints of cells, which is the size of
-  /// jumps that Kelly's estimate is small or large against. Collective.
+  /// Return the L2 norm of the strain by the midpoint rule, the reference size
+  /// for the jumps in Kelly's estimate. Collective.
   template <int dim>
   double
   strain_norm(const AdmissibleSpace<dim> &space,
               const DistributedVector    &ghosted_u);
 
-  /// The sum of the values of all cells, by active index, and that of their
-  /// sizes; rounded alike however the mesh came about. Zero without values, on
-  /// all ranks. Collective.
+  /// Return the sum of @p values, by active cell, and that of their absolute
+  /// values over all cells, in an order that depends on the mesh alone. Zero if
+  /// @p values is empty on all ranks. Collective.
   template <int dim>
   std::array<double, 2>
   sum_over_cells(const Vector<double>     &values,

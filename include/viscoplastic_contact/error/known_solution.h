@@ -10,30 +10,30 @@
 
 namespace Viscoplastic
 {
-  /// What a scene knows of its solution: the exact one, or a reference that a
-  /// finer run has left at the ends of the phases of `Time/Phases'; and what it
-  /// leaves for coarser runs.
+  /// Compares states with the exact solution of a scene, or with the reference
+  /// that a finer run has written at the ends of the phases of `Time/Phases',
+  /// and writes references for coarser runs.
   template <int dim>
   class KnownSolution
   {
   public:
-    /// Both stay in use; @p timer gets the seconds of the phase `errors'.
+    /// Keeps references to both; @p timer measures the phase `errors'.
     KnownSolution(const Scene<dim> &scene, TimerOutput &timer);
 
-    /// Throws ExcMessage if there are two of them, or if a file of the
-    /// reference is missing. Collective.
+    /// Throws ExcMessage if there are both an exact solution and a reference,
+    /// or if a file of the reference is missing. Collective.
     void
     check() const;
 
-    /// The errors of a state; not a number where nothing is known at its time.
-    /// Throws ExcMessage if the reference ends a phase at another time.
+    /// Return the errors of a state; NaN if no solution is known at its time.
+    /// Throws ExcMessage if the phase of the reference ends at another time.
     /// Collective.
     SolutionErrors
     errors(const Discretization<dim> &discretization,
            const State<dim>          &state) const;
 
-    /// Leave the state for coarser runs if it ends a phase and the scene wants
-    /// that. Throws ExcMessage. Collective.
+    /// Write the state to @p directory as a reference for coarser runs, if it
+    /// ends a phase and the scene asks for that. Throws ExcMessage. Collective.
     void
     write_reference(const Discretization<dim> &discretization,
                     const State<dim>          &state,

@@ -5,12 +5,11 @@
 
 namespace Viscoplastic
 {
-  /// The largest number of cells with which a run on all ranks is expected to
-  /// take no more than @p bytes: what the program itself takes, mesh and
-  /// spaces, and expected_memory() of the solver that such a mesh gets. Scaled
-  /// from
-  /// @p present, the numbers of unknowns in the body and on the face of
-  /// friction.
+  /// Return the largest number of cells for which a run is expected to take at
+  /// most @p bytes on all ranks together: the program itself, mesh and spaces,
+  /// and expected_memory() of the linear solver chosen for such a mesh. Numbers
+  /// of unknowns in the body and on the contact face are scaled from @p
+  /// present.
   template <int dim>
   unsigned int
   cells_in_memory(const Discretization<dim> &present, const double bytes);

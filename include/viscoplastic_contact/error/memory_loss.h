@@ -7,21 +7,21 @@
 
 namespace Viscoplastic
 {
-  /// What z loses when the cells that are marked are coarsened,
+  /// Return the norm of what z loses when the cells marked are coarsened,
   ///
   ///     ( int E^-1 (z - z_H) : (z - z_H) )^{1/2},
   ///
-  /// with z_H its projection to the coarser cells. It bounds what that does to
-  /// the error of u in the energy norm, a(e, v) = -(z - z_H, eps(v)). Refined
-  /// cells lose nothing. Zero without z. Collective.
+  /// with the projection z_H of z to the coarser cells. It bounds the resulting
+  /// error e of u in the energy norm, since a(e, v) = -(z - z_H, eps(v)).
+  /// Refined cells lose nothing. Zero without z. Collective.
   template <int dim>
   double
   memory_loss(const parallel::distributed::Triangulation<dim> &triangulation,
               const StressSpace<dim>                          &stress_space,
               const IrreversibleStress                        &z);
 
-  /// Withdraw marks from the families that lose most until the others lose at
-  /// most @p allowed together. Collective.
+  /// Withdraw marks from the families of cells that lose most until
+  /// memory_loss() of the others is at most @p allowed. Collective.
   template <int dim>
   void
   limit_memory_loss(parallel::distributed::Triangulation<dim> &triangulation,

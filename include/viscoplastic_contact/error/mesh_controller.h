@@ -11,15 +11,15 @@
 
 namespace Viscoplastic
 {
-  /// Decides when the mesh of a run changes, and marks its cells: every so many
-  /// steps by fractions of the estimate, or, in a run to a tolerance, where the
-  /// error of the mesh leaves its share of the budget. Whoever changes the mesh
-  /// carries the state over.
+  /// Decides when the mesh of a run changes, and marks its cells: every given
+  /// number of steps by fractions of the estimate, or, in a run to a tolerance,
+  /// when the error of the mesh leaves its share of the budget. The caller
+  /// changes the mesh and transfers the state.
   template <int dim>
   class MeshController
   {
   public:
-    /// All arguments stay in use. @p budget is null without a tolerance.
+    /// Keeps references to all arguments. @p budget: null without a tolerance.
     MeshController(const Scene<dim>                          &scene,
                    parallel::distributed::Triangulation<dim> &triangulation,
                    ErrorBudget                               *budget);
@@ -36,7 +36,7 @@ namespace Viscoplastic
          const EvaluatedState<dim> &accepted,
          const double               so_far);
 
-    /// Whether steps are repeated whose mesh has been too coarse.
+    /// Whether steps are repeated if their mesh has been too coarse.
     bool
     repeats_steps() const;
 
@@ -49,15 +49,15 @@ namespace Viscoplastic
                   const EvaluatedState<dim> &end,
                   const double               so_far);
 
-    /// The ratio of the error of the mesh to what it may be, for the step that
-    /// is repeated.
+    /// The ratio of the mesh error to the allowed one in the last call of
+    /// mark_for_step().
     double
     excess() const
     {
       return ratio;
     }
 
-    /// The step will do.
+    /// Reset the counters of refinements after a step has been accepted.
     void
     accept_step()
     {
@@ -74,25 +74,24 @@ namespace Viscoplastic
                const Vector<double>      &squared_indicators);
 
   private:
-    /// The bounds of the scene, with the number of cells that its bound on
-    /// memory allows. Collective.
+    /// The limits of the scene, with the number of cells that its memory budget
+    /// allows. Collective.
     RefinementParameters
     limits(const Discretization<dim> &discretization) const;
 
-    /// Whether the estimate of the mesh is what rounding and iterations leave,
-    /// as of a body that is carried along or strained uniformly: that says
-    /// nothing about the mesh, and differs between numbers of ranks.
-    /// Collective.
+    /// Whether the mesh estimate is only the error of rounding and iterations,
+    /// as in rigid motion or uniform strain. Such an estimate says nothing
+    /// about the mesh and differs between numbers of ranks. Collective.
     bool
     estimate_is_rounding(const Discretization<dim> &discretization,
                          const EvaluatedState<dim> &accepted) const;
 
-    /// The error of the mesh over what it may be in a run to a tolerance.
+    /// The ratio of the mesh error to the allowed one in a run to a tolerance.
     double
     space_ratio(const ErrorEstimate &errors, const double so_far) const;
 
-    /// A function that withdraws marks for coarsening where z would lose too
-    /// much for the tolerance of the run; empty where nothing is coarsened.
+    /// Return a function that withdraws coarsening marks where z would lose too
+    /// much for the tolerance; empty if no cells may be coarsened.
     std::function<void()>
     limit_coarsening(const Discretization<dim> &discretization,
                      const EvaluatedState<dim> &accepted,
@@ -102,14 +101,14 @@ namespace Viscoplastic
     const RefinementParameters                &wanted;
     parallel::distributed::Triangulation<dim> &triangulation;
     ErrorBudget                               *budget;
-    /// How often the mesh has been refined for the step that is being made.
+    /// How often the mesh has been refined for the present step.
     unsigned int n_refinements = 0;
-    /// How many times in turn that has not lowered the error, and the last one.
+    /// The number of successive refinements in vain, and the last error.
     unsigned int n_vain     = 0;
     double       last_error = 0.;
     double       ratio      = 0.;
 
-    /// Whether a step has an error that finer meshes do not lower.
+    /// Update n_vain; return whether finer meshes do not lower the error.
     bool
     is_in_vain(const EvaluatedState<dim> &end);
   };

@@ -8,13 +8,13 @@
 
 namespace Viscoplastic
 {
-  /// The fields of one state at the centers of its cells, free of the mesh: a
-  /// stand-in for the exact solution that runs on other meshes, with other time
-  /// steps and on other numbers of ranks compare themselves with.
+  /// The fields of one state, sampled at the centers of its cells and on faces,
+  /// which do not refer to its mesh: a substitute for the exact solution in
+  /// runs on other meshes, with other time steps or numbers of ranks.
   template <int dim>
   struct FieldSamples
   {
-    // deal.II sends what has serialize().
+    // deal.II sends objects that have serialize() to other ranks.
     struct CellPoint
     {
       Point<dim>     x;
@@ -36,7 +36,7 @@ namespace Viscoplastic
 
     struct FacePoint
     {
-      Point<dim>     x, inside; // the second tells which of two bodies it is of
+      Point<dim>     x, inside; // the second is in a cell of its body
       double         weight;    // the area over the number of points
       Tensor<1, dim> multiplier;
 
@@ -77,10 +77,10 @@ namespace Viscoplastic
   FieldSamples<dim>
   read_samples(const std::string &file, const MPI_Comm communicator);
 
-  /// As solution_errors(), against samples of a finer run at the same time,
-  /// by the quadrature of that run; `exact' are its norms. There is no memory
-  /// error. Samples outside of this mesh (at curved boundaries) do not count.
-  /// Collective.
+  /// Return errors as solution_errors() does, but against samples of a finer
+  /// run at the same time, integrated with their weights; `exact' has the norms
+  /// of the samples. There is no memory error. Samples outside of this mesh (at
+  /// curved boundaries) do not count. Collective.
   template <int dim>
   SolutionErrors
   differences(const FieldSamples<dim> &reference,

@@ -11,11 +11,11 @@ namespace Viscoplastic
   /// that solution.
   struct SolutionErrors
   {
-    /// u - u_h; sigma - sigma_h with the cell means sigma_h; lambda - lambda_h
-    /// with lambda = -sigma_tau and the nodal densities lambda_h.
+    /// Norms of u - u_h, of sigma - sigma_h with cell means sigma_h, and of
+    /// lambda - lambda_h with lambda = -sigma_tau and nodal densities lambda_h.
     SolutionNorms error, exact;
-    /// (int E^-1 (z - z_h) : (z - z_h))^(1/2): what the steps before this one
-    /// have left, and what cell means cannot hold. A history at quadrature
+    /// (int E^-1 (z - z_h) : (z - z_h))^(1/2): the errors of earlier steps and,
+    /// with cell means, what z varies by in cells. A history at quadrature
     /// points is compared at these points only.
     double memory = 0.;
     /// The estimate of the error in the energy norm by
@@ -30,9 +30,9 @@ namespace Viscoplastic
   SolutionNorms
   square_roots(const SolutionNorms &squares, const MPI_Comm communicator);
 
-  /// The errors by quadrature with three points in each direction, without the
-  /// recovery's. Norms of stress, multiplier and memory stay zero where the
-  /// solution has no stress. @p multiplier_density is null without contact
+  /// Return the errors by Gauss quadrature with three points in each direction;
+  /// `recovery' is not set. Norms of stress, multiplier and memory are zero if
+  /// the solution has no stress. @p multiplier_density is null without contact
   /// points. Collective.
   template <int dim>
   SolutionErrors
@@ -40,12 +40,12 @@ namespace Viscoplastic
                   const State<dim>        &state,
                   const DistributedVector *multiplier_density);
 
-  /// Hold the exact solution against the scene whose data it makes: what is
-  /// prescribed on clamped, symmetry and contact pieces, the friction law on
-  /// Gamma_3, and whether its rates exist. At the times of some 20 steps.
+  /// Check that the exact solution satisfies the conditions of its scene on
+  /// clamped, symmetry and contact pieces and the friction law on Gamma_3, at
+  /// the times of some 20 steps, and that its rates exist.
   ///
-  /// Throws ExcMessage naming boundary, place, time and what is violated.
-  /// Collective: a rank that finds nothing wrong does not wait for others.
+  /// Throws ExcMessage naming boundary, place, time and what is violated. Each
+  /// rank checks its own cells and does not wait for others.
   template <int dim>
   void
   check_exact_solution(const AdmissibleSpace<dim> &space);

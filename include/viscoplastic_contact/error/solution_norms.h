@@ -5,7 +5,7 @@
 
 namespace Viscoplastic
 {
-  /// Norms of the kinds in which the theorems bound errors.
+  /// The norms in which the theorems of the paper bound errors.
   struct SolutionNorms
   {
     /// a(u,u)^(1/2), with the reduced strain under mean dilatation.
@@ -23,7 +23,7 @@ namespace Viscoplastic
       energy = h1 = stress = multiplier = value;
     }
 
-    /// Let each be the larger one; what is not a number does not count.
+    /// Set each norm to the larger one of both; NaN in @p other is ignored.
     void
     update(const SolutionNorms &other)
     {

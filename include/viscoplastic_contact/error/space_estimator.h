@@ -20,14 +20,14 @@ namespace Viscoplastic
     /// The error of the rate G: of cell means (cell_mean_defect()) or by
     /// volumetric locking; zero without either.
     double rate_defect = 0.;
-    /// The part of it that curved faces of bodies that touch miss of the
-    /// geometry, squared by active cell; empty without them.
+    /// The squared error by the geometry of curved bodies in contact by active
+    /// cell, part of the total; empty without such contact.
     Vector<double> geometry;
-    /// The squared share of each active cell by which the mesh is refined;
+    /// The squared indicators by active cell by which the mesh is refined;
     /// empty in scenes on a fixed mesh.
     Vector<double> squared_indicators;
 
-    /// Take the estimate in proportion to the state.
+    /// Scale the estimate in proportion to the size of the state.
     void
     scale(const double factor)
     {
@@ -39,14 +39,14 @@ namespace Viscoplastic
 
 
 
-  /// Makes the estimates that a scene asks for on one mesh: that of the error,
-  /// also for refinement, and Kelly's for refinement.
+  /// Computes the estimates that a scene asks for on one mesh: that of the
+  /// error, also for refinement, and Kelly's indicator for refinement.
   ///
-  /// The squared error of a cell is the larger of the residual estimate, which
-  /// knows loads and contact, and of the recovery
-  /// estimate, which knows what creep has made of earlier errors. That of a
-  /// residual is one of a single step for given z: in long creep it is a
-  /// fraction of the error, since displacements grow and residuals do not.
+  /// The squared error of a cell is the larger one of the residual estimate,
+  /// which contains loads and contact, and the recovery estimate, which
+  /// contains errors accumulated by creep. The residual estimate is that of a
+  /// single step for given z: in long creep it is a fraction of the error,
+  /// since displacements grow and residuals do not.
   template <int dim>
   class SpaceEstimator
   {
@@ -57,19 +57,19 @@ namespace Viscoplastic
     static bool
     is_needed(const Scene<dim> &scene);
 
-    /// Whether estimates have a geometry. The same on all ranks.
+    /// Whether SpaceEstimate::geometry is set. The same on all ranks.
     bool
     has_curved_contact() const
     {
       return residual_estimator && residual_estimator->has_curved_contact();
     }
 
-    /// Collective.
+    /// Return the estimate of a state with its @p forces. Collective.
     SpaceEstimate
     estimate(const State<dim> &state, const Forces<dim> &forces) const;
 
-    /// How the residuals of a state and of a dual solution go together; there
-    /// has to be a residual estimator. @p memory: of the state, see
+    /// Return ResidualEstimator::multiply() of a state and a dual solution by
+    /// active cell. Requires a residual estimator. @p memory: of the state, see
     /// ResidualEstimator::Fields. Collective.
     Vector<double>
     multiply(const State<dim>                              &state,
@@ -80,8 +80,8 @@ namespace Viscoplastic
     typename ResidualEstimator<dim>::OfDual
     residuals_of(const DualSolution<dim> &dual) const;
 
-    /// The products of both fields' errors by RecoveryEstimator, which includes
-    /// the errors that creep has accumulated from those of rates. Collective.
+    /// Return RecoveryEstimator::multiply() of a state and a dual solution by
+    /// active cell, which includes errors accumulated by creep. Collective.
     Vector<double>
     multiply_recovered(
       const State<dim>                                     &state,
@@ -97,7 +97,7 @@ namespace Viscoplastic
   private:
     const Discretization<dim> &discretization;
     const bool                 refines_by_kelly, refines_by_residual;
-    /// Whether volumetric locking counts.
+    /// Whether volumetric locking is part of the estimate.
     const bool locks;
     /// Null if only Kelly's estimate is asked for.
     std::unique_ptr<LocalCells<dim>>        cells;
@@ -105,7 +105,7 @@ namespace Viscoplastic
     std::unique_ptr<RecoveryEstimator<dim>> recovery_estimator;
   };
 
-  /// The recovery estimate by active cell of a single state. Collective.
+  /// Return the squared recovery estimate by active cell. Collective.
   template <int dim>
   Vector<double>
   squared_recovery_estimate(const StressSpace<dim> &stress_space,

@@ -19,24 +19,23 @@ namespace Viscoplastic
     double rate;
   };
 
-  /// Locking of full integration in what is nearly incompressible, or becomes
-  /// so since it creeps without change of volume. A locked solution is smooth,
-  /// and wrong: neither jumps of stresses nor those of strains show it.
+  /// Estimate the locking of full integration in bodies that are nearly
+  /// incompressible or creep without change of volume. A locked solution is
+  /// smooth and wrong: neither jumps of stresses nor of strains show it.
   ///
-  /// A cell that bends changes its volume at the quadrature points, which makes
-  /// pressures p that vary around their mean in it and have no part in the
-  /// solution. They carry loads that deviators should. Let curvatures extend
-  /// over the length L, and p be K h times the curvature kappa of cells of
-  /// width h, beside deviators 2 mu L kappa. Without p the moment that both
-  /// make bends the body by e of
+  /// A cell that bends changes its volume at the quadrature points. This makes
+  /// spurious pressures p that vary around their cell mean and carry loads that
+  /// deviators should. In cells of width h and curvature kappa, p is about K h
+  /// kappa beside deviators 2 mu L kappa, if curvatures extend over the length
+  /// L. Without p, the same moment would bend the body more, by e of
   ///
   ///     (3/2)^{1/2} (h'/L) |p|/(2 mu)^{1/2}
   ///
-  /// in the energy norm, where h'/L is what deviators of strains vary by in
-  /// cells relative to their size, as recovered strains tell (@p defect, the
-  /// squared energy of their deviators' errors). Flow makes of p in each unit
-  /// of time as much as a deviator s of its size, G'(sigma) s, with the
-  /// tangents where it is largest in the cell. Collective.
+  /// in the energy norm. h'/L is the variation of strain deviators in cells
+  /// relative to their size, from recovered strains (@p defect: the squared
+  /// energy of their deviators' errors). The rate is that of deviators s of the
+  /// size of p, G'(sigma) s per unit of time, with the tangents at the largest
+  /// p in the cell. Collective.
   template <int dim>
   VolumetricLocking
   volumetric_locking(const LocalCells<dim> &cells,

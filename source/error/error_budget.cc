@@ -2,8 +2,6 @@
 #include <viscoplastic_contact/error/error_budget.h>
 #include <viscoplastic_contact/parameters/parameter_file.h>
 
-#include <limits>
-
 namespace Viscoplastic
 {
   ErrorBudget::ErrorBudget(const double       tolerance,
@@ -34,14 +32,8 @@ namespace Viscoplastic
   double
   ErrorBudget::transfer(const ErrorEstimate &accepted, const double size) const
   {
-    const double left = 0.5 * std::max(0.,
-                                       transfer_share * tolerance * size -
-                                         errors(accepted).transfer);
-    if (!of_quantity)
-      return left;
-    const double sensitivity = accepted.quantity.dual_error;
-    return sensitivity > 0. ? left / sensitivity :
-                              std::numeric_limits<double>::infinity();
+    return 0.5 *
+           std::max(0., transfer_share * tolerance * size - accepted.transfer);
   }
 
 

@@ -80,7 +80,8 @@ namespace Viscoplastic
     }
 
     /// The error that the next change of the mesh may make by coarsening z, in
-    /// the energy norm: half of what is left of its share.
+    /// the energy norm: half of what is left of its share. (Meshes of a
+    /// quantity of interest do not coarsen.)
     double
     transfer(const ErrorEstimate &accepted, const double size) const;
 

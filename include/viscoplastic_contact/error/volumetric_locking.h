@@ -29,7 +29,7 @@ namespace Viscoplastic
   /// kappa beside deviators 2 mu L kappa, if curvatures extend over the length
   /// L. Without p, the same moment would bend the body more, by e of
   ///
-  ///     (3/2)^{1/2} (h'/L) |p|/(2 mu)^{1/2}
+  ///     (5/2)^{1/2} (h'/L) |p|/(2 mu)^{1/2}
   ///
   /// in the energy norm. h'/L is the variation of strain deviators in cells
   /// relative to their size, from recovered strains (@p defect: the squared

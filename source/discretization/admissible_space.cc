@@ -418,6 +418,33 @@ namespace Viscoplastic
 
 
   template <int dim>
+  Tensor<1, dim>
+  AdmissibleSpace<dim>::prescribed_at(const BoundaryNode &node,
+                                      const double        t) const
+  {
+    const NodalFrame<dim> &frame = frames[node.frame];
+    Tensor<1, dim>         datum;
+    for (unsigned int i = 0; i < frame.n_fixed; ++i)
+      {
+        const auto &condition = scene.condition(frame.condition_boundary[i]);
+        if (condition.role == BoundaryRole::displacement)
+          datum[i] =
+            condition.displacement[frame.condition_component[i]]->value(
+              node.position, t);
+        else if (condition.is_glued())
+          datum[i] =
+            condition.glued_displacement(node.position,
+                                         normal_at(node.first_dof, condition),
+                                         t)[frame.condition_component[i]];
+        else if (condition.foundation_displacement)
+          datum[i] = condition.foundation_displacement->value(node.position, t);
+      }
+    return invert(condition_matrix(frame)) * datum;
+  }
+
+
+
+  template <int dim>
   void
   AdmissibleSpace<dim>::set_prescribed(const double       t,
                                        DistributedVector &in_frames) const
@@ -429,30 +456,10 @@ namespace Viscoplastic
     for (const BoundaryNode &node : nodes)
       {
         const NodalFrame<dim> &frame = frames[node.frame];
-        const unsigned int     m     = frame.n_fixed;
-        if (m == 0)
+        if (frame.n_fixed == 0)
           continue;
-        Tensor<1, dim> datum;
-        for (unsigned int i = 0; i < m; ++i)
-          {
-            const auto &condition =
-              scene.condition(frame.condition_boundary[i]);
-            if (condition.role == BoundaryRole::displacement)
-              datum[i] =
-                condition.displacement[frame.condition_component[i]]->value(
-                  node.position, t);
-            else if (condition.is_glued())
-              datum[i] =
-                condition.glued_displacement(node.position,
-                                             normal_at(node.first_dof,
-                                                       condition),
-                                             t)[frame.condition_component[i]];
-            else if (condition.foundation_displacement)
-              datum[i] =
-                condition.foundation_displacement->value(node.position, t);
-          }
-        const Tensor<1, dim> value = invert(condition_matrix(frame)) * datum;
-        for (unsigned int j = 0; j < m; ++j)
+        const Tensor<1, dim> value = prescribed_at(node, t);
+        for (unsigned int j = 0; j < frame.n_fixed; ++j)
           in_frames.begin()[node.first_dof - first + frame.fixed[j]] = value[j];
       }
   }

@@ -17,14 +17,13 @@ namespace Viscoplastic
 
 
   template <int dim>
-  CellEnergies
+  FlowEnergies
   energies_of_cell(const FlowLaws<dim>                  &laws,
                    const typename FlowLaws<dim>::AtTime &before,
                    const typename FlowLaws<dim>::AtTime &now,
                    const State<dim>                     &old_state,
                    const State<dim>                     &state,
-                   const std::size_t                     c,
-                   const bool                            without_strain)
+                   const std::size_t                     c)
   {
     const StressSpace<dim> &stress_space = laws.stress_space;
     const unsigned int      n            = stress_space.n_samples;
@@ -33,36 +32,20 @@ namespace Viscoplastic
     // At most 2^dim samples, without memory from the heap.
     using Samples =
       std::array<SymmetricTensor<2, 3>, GeometryInfo<dim>::vertices_per_cell>;
-    CellEnergies result;
-    result.mean_strain = stress_space.mean_strain(c, state.u.begin());
-    result.mean_stress = stiffness.stress(result.mean_strain);
+    FlowEnergies result;
     if (state.z.empty())
       return result;
-    result.mean_stress += stress_space.mean(c, &state.z[c * n]);
     // A source flows also where there is no law.
     const bool flows = law || laws.source_solution;
     const bool is_heated =
       laws.thermal && laws.thermal->expands && laws.thermal->varies_in_time;
-    const SymmetricTensor<2, 3> *of_cell = &state.z[c * n];
+    const SymmetricTensor<2, 3> *of_cell     = &state.z[c * n],
+                                *old_of_cell = &old_state.z[c * n];
     result.irreversible_energy =
       0.5 * stress_space.complementary_product(c, of_cell, of_cell);
     if (!flows && !is_heated)
       return result;
-    const SymmetricTensor<2, 3> *old_of_cell = &old_state.z[c * n];
-    Samples                      strain, old_strain;
-    if (without_strain)
-      {
-        Samples change, sum;
-        for (unsigned int s = 0; s < n; ++s)
-          {
-            change[s] = of_cell[s] - old_of_cell[s];
-            sum[s]    = old_of_cell[s] + of_cell[s];
-          }
-        result.viscous_dissipation =
-          -0.5 *
-          stress_space.complementary_product(c, change.data(), sum.data());
-        return result;
-      }
+    Samples strain, old_strain;
     stress_space.strains(c, state.u.begin(), strain.data());
     stress_space.strains(c, old_state.u.begin(), old_strain.data());
     for (unsigned int s = 0; s < n; ++s)
@@ -133,19 +116,35 @@ namespace Viscoplastic
 
 
   template <int dim>
-  StressSummary<dim>
-  summarize_stress(const FlowLaws<dim> &laws,
+  FlowEnergies
+  energies_of_flow(const FlowLaws<dim> &laws,
                    const State<dim>    &old_state,
-                   const State<dim>    &state,
-                   const double        *work_on_strain)
+                   const State<dim>    &state)
   {
-    const StressSpace<dim> &stress_space = laws.stress_space;
-    // Stresses of the mean strain are driving forces of most laws.
-    if (laws.any_own_energy ||
-        (laws.thermal && laws.thermal->expands && laws.thermal->varies_in_time))
-      work_on_strain = nullptr;
-    const auto before = laws.at(old_state.t, old_state.history),
-               now    = laws.at(state.t, state.history);
+    const AdmissibleSpace<dim> &space = laws.stress_space.space;
+    const auto before                 = laws.at(old_state.t, old_state.history),
+               now                    = laws.at(state.t, state.history);
+    std::vector<double> sums(3, 0.);
+    for (std::size_t c = 0; c < laws.stress_space.n_cells(); ++c)
+      if (space.scene.is_present(space.cells[c]->material_id()))
+        {
+          const FlowEnergies of_cell =
+            energies_of_cell(laws, before, now, old_state, state, c);
+          sums[0] += of_cell.irreversible_energy;
+          sums[1] += of_cell.viscous_dissipation;
+          sums[2] += of_cell.thermal_work;
+        }
+    Utilities::MPI::sum(sums, space.communicator, sums);
+    return {sums[0], sums[1], sums[2]};
+  }
+
+
+
+  template <int dim>
+  StressSummary<dim>
+  summarize_stress(const StressSpace<dim> &stress_space,
+                   const State<dim>       &state)
+  {
     StressSummary<dim> result;
     LargestPlace<dim>  largest_mises;
     double             volume = 0., strains = 0.;
@@ -154,44 +153,38 @@ namespace Viscoplastic
         const auto &cell = stress_space.space.cells[c];
         if (!stress_space.space.scene.is_present(cell->material_id()))
           continue;
-        const CellEnergies energies = energies_of_cell(
-          laws, before, now, old_state, state, c, work_on_strain != nullptr);
-        const SymmetricTensor<2, 3> &mean = energies.mean_stress;
-        result.irreversible_energy += energies.irreversible_energy;
-        result.viscous_dissipation += energies.viscous_dissipation;
-        result.thermal_work += energies.thermal_work;
-        const double mises = std::sqrt(1.5) * stable_norm(deviator(mean));
+        const SymmetricTensor<2, 3> mean_strain =
+          stress_space.mean_strain(c, state.u.begin());
+        SymmetricTensor<2, 3> stress =
+          stress_space.moduli(c).stress(mean_strain);
+        if (!state.z.empty())
+          stress += stress_space.mean(c, &state.z[c * stress_space.n_samples]);
+        const double mises = std::sqrt(1.5) * stable_norm(deviator(stress));
         if (largest_mises.may_take(mises))
           largest_mises.add(mises, cell->center());
-        const double strain = energies.mean_strain.norm(),
-                     weight = strain * strain * stress_space.volume(c);
+        const double strain  = mean_strain.norm(),
+                     of_cell = stress_space.volume(c),
+                     weight  = strain * strain * of_cell;
         strains += weight;
         result.mean_strain += weight * strain;
-        result.mean_von_mises += mises * stress_space.volume(c);
-        result.stress_norm += (mean * mean) * stress_space.volume(c);
-        volume += stress_space.volume(c);
+        result.mean_von_mises += mises * of_cell;
+        result.stress_norm += (stress * stress) * of_cell;
+        volume += of_cell;
       }
 
     const MPI_Comm      comm = stress_space.space.communicator;
     std::vector<double> sums{result.mean_von_mises,
                              result.stress_norm,
-                             result.irreversible_energy,
-                             result.viscous_dissipation,
                              volume,
-                             result.thermal_work,
                              strains,
                              result.mean_strain};
     Utilities::MPI::sum(sums, comm, sums);
     largest_mises.reduce(comm);
-    result.max_von_mises       = largest_mises.value();
-    result.von_mises_position  = largest_mises.position();
-    result.mean_von_mises      = sums[0] / sums[4];
-    result.stress_norm         = std::sqrt(sums[1]);
-    result.irreversible_energy = sums[2];
-    result.viscous_dissipation =
-      sums[3] - (work_on_strain != nullptr ? *work_on_strain : 0.);
-    result.thermal_work = sums[5];
-    result.mean_strain  = sums[6] > 0. ? sums[7] / sums[6] : 0.;
+    result.max_von_mises      = largest_mises.value();
+    result.von_mises_position = largest_mises.position();
+    result.mean_von_mises     = sums[0] / sums[2];
+    result.stress_norm        = std::sqrt(sums[1]);
+    result.mean_strain        = sums[3] > 0. ? sums[4] / sums[3] : 0.;
     return result;
   }
 
@@ -235,5 +228,6 @@ namespace Viscoplastic
 
   VISCOPLASTIC_INSTANTIATE(summarize_stress);
   VISCOPLASTIC_INSTANTIATE(energies_of_cell);
+  VISCOPLASTIC_INSTANTIATE(energies_of_flow);
   VISCOPLASTIC_INSTANTIATE(relative_stress_fluctuation);
 } // namespace Viscoplastic

@@ -223,9 +223,10 @@ namespace Viscoplastic
   FlowLaws<dim>::AtTime::varies_in_space(const std::size_t cell) const
   {
     return entry(cell).varies_in_space ||
-           (entry(cell).law && entry(cell).law->depends_on_temperature() &&
+           (laws.thermal &&
             laws.stress_space.space.scene.temperature->value
-              .depends_on_position());
+              .depends_on_position() &&
+            entry(cell).law && entry(cell).law->depends_on_temperature());
   }
 
 
@@ -297,6 +298,11 @@ namespace Viscoplastic
     const auto                now          = laws.at(t, state.history);
     FlowRate                  result{IrreversibleStress(z.size()), 0., 0.};
     result.history_rate.resize(state.history.size());
+    // Not of predictions, which take the rates before.
+    const auto &quantity = stress_space.space.scene.quantity;
+    if (quantity && !quantity->is_sum() && laws.source_solution == nullptr &&
+        side == ExactSolution<dim>::Side::after)
+      result.relaxation.resize(z.size());
     std::array<SymmetricTensor<2, 3>, GeometryInfo<dim>::vertices_per_cell>
                                                                strain, stress;
     std::array<LawPoint, GeometryInfo<dim>::vertices_per_cell> points;
@@ -333,6 +339,11 @@ namespace Viscoplastic
                 worst.add(r, points[s].x);
               if (flow[s].is_beyond_cap)
                 result.capped_volume += stress_space.weight(c, s);
+              if (result.relaxation.empty())
+                continue;
+              const double size            = deviator(stress[s]).norm();
+              result.relaxation[c * n + s] = {
+                {size > 0. ? flow[s].rate.norm() / size : r, r}};
             }
           for (unsigned int s = 0; law->n_history_variables > 0 && s < n; ++s)
             {

@@ -67,6 +67,14 @@ namespace Viscoplastic
                                      irreversible_forces(stress_space, state.z);
         forces.irreversible_work = forces.u * forces.irreversible;
         forces.internal += forces.irreversible;
+        double square = 0.;
+        for (std::size_t c = 0; c < stress_space.n_cells(); ++c)
+          {
+            const auto *z = &state.z[c * stress_space.n_samples];
+            square += stress_space.complementary_product(c, z, z);
+          }
+        forces.irreversible_energy =
+          0.5 * Utilities::MPI::sum(square, space.communicator);
       }
     return forces;
   }

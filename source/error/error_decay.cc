@@ -40,25 +40,35 @@ namespace Viscoplastic
     if (growth)
       fading = invert(identity_tensor<3>() + *growth);
     is_uniform = law && law->has_constant_tangents() && !now.varies_in_space(c);
-    relaxation = {};
-    is_known   = law == nullptr;
-    cell       = c;
+    is_radial  = law && !rate.relaxation.empty() && stiffness->is_isotropic() &&
+                law->radial_flow(0., now.point(c, 0));
+    asks_for_stress = law && !is_uniform && !is_radial;
+    relaxation      = {};
+    is_known        = law == nullptr;
+    cell            = c;
   }
 
 
 
   template <int dim>
   const ErrorRelaxation &
-  ErrorDecay<dim>::relaxation_at(const SymmetricTensor<2, 3> &stress,
+  ErrorDecay<dim>::relaxation_at(const std::size_t            i,
+                                 const SymmetricTensor<2, 3> &stress,
                                  const SymmetricTensor<2, 3> &strain,
                                  const LawPoint              &point)
   {
-    if (!is_known)
+    if (is_known)
+      return relaxation;
+    if (is_uniform)
       relaxation =
-        is_uniform ?
-          error_relaxation(*law, {}, {}, k, *stiffness, now.point(cell, 0)) :
-          error_relaxation(*law, stress, strain, k, *stiffness, point);
-    is_known |= is_uniform;
+        error_relaxation(*law, {}, {}, k, *stiffness, now.point(cell, 0));
+    else if (is_radial)
+      relaxation = radial_relaxation(k * rate.relaxation[i][0],
+                                     k * rate.relaxation[i][1],
+                                     rate.rate[i]);
+    else
+      relaxation = error_relaxation(*law, stress, strain, k, *stiffness, point);
+    is_known = is_uniform;
     return relaxation;
   }
 
@@ -70,11 +80,20 @@ namespace Viscoplastic
                       const State<dim>    &old,
                       EvaluatedState<dim> &end)
   {
-    State<dim>                        &state = end.state;
-    const StressSpace<dim>            &space = laws.stress_space;
-    ErrorDecay<dim>                    decay(laws, old, state);
+    State<dim>             &state = end.state;
+    const StressSpace<dim> &space = laws.stress_space;
+    const Scene<dim>       &scene = space.space.scene;
+    // A force remembers; steps are chosen by the first sum, and the others are
+    // for points that come to rest.
+    const bool is_force = scene.quantity->is_force(),
+               chooses =
+                 is_force && scene.parameters.error_control.has_tolerance(),
+               rests = is_force && scene.has_contact_points();
+    ErrorDecay<dim>                    decay(laws, old, end);
     std::vector<SymmetricTensor<2, 3>> strains(space.n_samples),
       errors(space.n_samples);
+    SymmetricTensor<2, 3> stress, strain;
+    LawPoint              point;
     // Of what the step adds, of D, of what is kept and regained of that.
     std::vector<double> sums(4, 0.);
     std::size_t         i = 0;
@@ -86,48 +105,55 @@ namespace Viscoplastic
             i += space.n_samples;
             continue;
           }
+        const Stiffness &stiffness = *decay.stiffness;
         space.strains(c, state.carried_error_of_u.begin(), errors.data());
-        if (!decay.is_uniform)
+        if (decay.asks_for_stress)
           space.strains(c, state.u.begin(), strains.data());
         for (unsigned int s = 0; s < space.n_samples; ++s, ++i)
           {
-            const Stiffness       &stiffness = *decay.stiffness;
+            if (decay.asks_for_stress)
+              {
+                stress = stiffness.stress(strains[s]) + state.z[i];
+                strain = decay.now.mechanical(strains[s], c, s);
+                point  = decay.now.point(c, s);
+              }
             const ErrorRelaxation &relaxation =
-              decay.relaxation_at(stiffness.stress(strains[s]) + state.z[i],
-                                  decay.now.mechanical(strains[s], c, s),
-                                  decay.now.point(c, s));
+              decay.relaxation_at(i, stress, strain, point);
+            SymmetricTensor<2, 3>       &error = state.carried_error[i];
+            const SymmetricTensor<2, 3> &moves = state.time_error[i];
             const auto add_square = [&](const unsigned int           sum,
                                         const SymmetricTensor<2, 3> &value) {
               sums[sum] +=
                 space.weight(c, s) * stiffness.complementary_square(value);
             };
-            SymmetricTensor<2, 3>       &error = state.carried_error[i];
-            const SymmetricTensor<2, 3> &moves = state.time_error[i];
-            add_square(0, relaxation * (error - old.carried_error[i]));
-            add_square(1, moves);
-            add_square(2, relaxation * moves);
-            if (decay.growth)
-              add_square(3, relaxation * (*decay.growth * moves));
+            if (chooses)
+              add_square(0, relaxation * (error - old.carried_error[i]));
+            if (rests)
+              {
+                add_square(1, moves);
+                add_square(2, relaxation * moves);
+                if (decay.growth)
+                  add_square(3, relaxation * (*decay.growth * moves));
+              }
             // The stress of the error relaxes as if the strain stayed, and what
             // strains then make up for fades as if the stress did.
             const SymmetricTensor<2, 3> elastic = stiffness.stress(errors[s]),
-                                        stress = relaxation * (error + elastic);
-            error                              = stress - elastic;
+                                        left = relaxation * (error + elastic);
+            error                            = left - elastic;
             if (decay.growth)
-              error = decay.fading * (error + *decay.growth * stress);
+              error = decay.fading * (error + *decay.growth * left);
           }
       }
+    if (!is_force)
+      return;
     Utilities::MPI::sum(sums, space.space.communicator, sums);
     ErrorEstimate &estimate = end.errors;
     const auto     share    = [&](const double part) {
       return std::sqrt(part / sums[1]);
     };
-    if (laws.stress_space.space.scene.quantity->is_force())
-      {
-        estimate.remembered_indicator = std::sqrt(sums[0]);
-        estimate.remembered_share     = sums[1] > 0. ? share(sums[2]) : 1.;
-        estimate.remembered_gain      = sums[1] > 0. ? share(sums[3]) : 0.;
-      }
+    estimate.remembered_indicator = std::sqrt(sums[0]);
+    estimate.remembered_share     = sums[1] > 0. ? share(sums[2]) : 1.;
+    estimate.remembered_gain      = sums[1] > 0. ? share(sums[3]) : 0.;
   }
 
 

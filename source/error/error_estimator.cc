@@ -194,16 +194,20 @@ namespace Viscoplastic
     DistributedVector velocity = space.owned_vector();
     space.to_frames(accepted.state.velocity, velocity);
     std::vector<double> products(2, 0.); // a(d, d), a(d, v)
+    const Forces<dim>  &old_forces = accepted.forces;
+    const bool          has_z      = forces.irreversible.size() > 0;
+    const double       *u = forces.u.begin(), *old_u = old_forces.u.begin(),
+                 *v = velocity.begin(), *internal = forces.internal.begin(),
+                 *old_internal = old_forces.internal.begin(),
+                 *z            = has_z ? forces.irreversible.begin() : nullptr,
+                 *old_z = has_z ? old_forces.irreversible.begin() : nullptr;
     for (unsigned int i = 0; i < velocity.locally_owned_size(); ++i)
       {
-        const auto elastic = [i](const Forces<dim> &of) {
-          return of.internal.begin()[i] -
-                 (of.irreversible.size() > 0 ? of.irreversible.begin()[i] : 0.);
-        };
-        const double change = elastic(forces) - elastic(accepted.forces);
-        products[0] +=
-          change * (forces.u.begin()[i] - accepted.forces.u.begin()[i]);
-        products[1] += change * velocity.begin()[i];
+        double change = internal[i] - old_internal[i];
+        if (has_z)
+          change = (internal[i] - z[i]) - (old_internal[i] - old_z[i]);
+        products[0] += change * (u[i] - old_u[i]);
+        products[1] += change * v[i];
       }
     Utilities::MPI::sum(products, space.communicator, products);
     estimate.velocity_square = products[0] / (k * k);

@@ -23,6 +23,7 @@ namespace Viscoplastic
         normals[q]   = values.normal_vector(q);
         positions[q] = values.quadrature_point(q) - vertex_0;
         weights[q]   = values.JxW(q);
+        area += weights[q];
       }
   }
 

@@ -123,6 +123,7 @@ namespace Viscoplastic
           dual_of_creep);
     const DualSolution<dim> &dual = dual_of_creep.solution;
     typename RecoveryEstimator<dim>::Linearization linearization{k / time, {}};
+    const bool is_rate_known = discretization.laws.source_solution == nullptr;
     if (!tangent->is_constant)
       linearization.remainder = [&](const std::size_t            c,
                                     const unsigned int           s,
@@ -142,7 +143,9 @@ namespace Viscoplastic
         return change - stiffness.stress(e) -
                k * (flow->step_rate(
                       stress + change, of_law + e, k, stiffness, point) -
-                    flow->step_rate(stress, of_law, k, stiffness, point));
+                    (is_rate_known && flow->n_history_variables == 0 ?
+                       rate.rate[i] :
+                       flow->step_rate(stress, of_law, k, stiffness, point)));
       };
     Vector<double> products =
       space_estimator.multiply_recovered(state,

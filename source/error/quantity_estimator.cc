@@ -46,6 +46,7 @@ namespace Viscoplastic
       return;
     kept.residuals.reset();
     kept.recovered = {};
+    kept.strains.clear();
   }
 
 
@@ -91,7 +92,7 @@ namespace Viscoplastic
                DualSolution<dim>() :
                dual_problem.restore(memory.w[i], memory.truncations[i], matrix);
     };
-    dual_of_step  = {restored(0, discretization.matrix), {}, {}};
+    dual_of_step  = {restored(0, discretization.matrix), {}, {}, {}};
     dual_of_creep = {};
     if (linearized)
       dual_of_creep.solution = restored(1, tangent->matrix());
@@ -143,7 +144,8 @@ namespace Viscoplastic
           state, end.forces, *dual_of_step.residuals, creep.exponent);
         dual_problem.add_at_meetings(state, products);
         Vector<double> indicators(products);
-        auto           sums = sum_over_cells(products, triangulation);
+        const auto     of_products = sum_over_cells(products, triangulation);
+        auto           sums        = of_products;
         // Forces forget what has crept, but nothing is known of the signs then.
         if (quantity.is_force() && errors.energy_norm > 0.)
           estimate.space_at_least =
@@ -156,7 +158,6 @@ namespace Viscoplastic
         // Residuals do not know what mean dilatation leaves out of pressures.
         if (creeps || (d.mean_dilatation && dual.norm > 0.))
           {
-            const double of_residuals = sums[0];
             if (creeps)
               indicators =
                 products_of_creep(state, *end.rate, creep, law, sides);
@@ -169,10 +170,10 @@ namespace Viscoplastic
               estimate.space_at_least =
                 std::max(estimate.space_at_least,
                          std::min(1., crept) * least_share * safety * sums[1]);
-            if (std::abs(of_residuals) > std::abs(sums[0]))
+            if (std::abs(of_products[0]) > std::abs(sums[0]))
               {
                 indicators = products;
-                sums       = sum_over_cells(products, triangulation);
+                sums       = of_products;
               }
           }
         for (double &indicator : indicators)
@@ -255,14 +256,31 @@ namespace Viscoplastic
   double
   QuantityEstimator<dim>::time_error(const State<dim> &state) const
   {
-    const Discretization<dim> &d      = discretization;
-    const bool                 is_sum = d.scene().quantity->is_sum();
-    const DualSolution<dim>   &dual   = dual_of_step.solution;
-    DistributedVector          load   = d.space.owned_vector();
-    add_irreversible_load(d.stress_space,
-                          is_sum ? state.time_error : state.carried_error,
-                          load);
-    double error = dual.norm > 0. ? load * dual.w : 0.;
+    const Discretization<dim> &d       = discretization;
+    const StressSpace<dim>    &space   = d.stress_space;
+    const bool                 is_sum  = d.scene().quantity->is_sum();
+    const DualSolution<dim>   &dual    = dual_of_step.solution;
+    IrreversibleStress        &strains = dual_of_step.strains;
+    double                     error   = 0.;
+    if (dual.norm > 0.) // on all ranks
+      {
+        const IrreversibleStress &of_z =
+          is_sum ? state.time_error : state.carried_error;
+        if (strains.empty())
+          {
+            strains.resize(of_z.size());
+            for (std::size_t c = 0; c < space.n_cells(); ++c)
+              {
+                auto *of_cell = &strains[c * space.n_samples];
+                space.strains(c, dual.cartesian.begin(), of_cell);
+                for (unsigned int s = 0; s < space.n_samples; ++s)
+                  of_cell[s] *= space.weight(c, s);
+              }
+          }
+        for (std::size_t i = 0; i < of_z.size(); ++i)
+          error -= of_z[i] * strains[i];
+        error = Utilities::MPI::sum(error, d.space.communicator);
+      }
     if (!is_sum && d.slipping_face())
       {
         DistributedVector u = d.space.owned_vector();

@@ -352,17 +352,21 @@ namespace Viscoplastic
                shapes[cells[face.cells[0]].shape].faces[face.face],
                is_hanging && cell == face.cells[1] ? 1. / n_face_points : 1.,
                is_free,
-               jumps});
+               jumps,
+               cell == face.cells[1] && !is_free && face.is_within_material});
       }
     for (const BoundaryFace &face : boundary_faces)
-      visit({face.cell,
-             shapes[cells[face.cell].shape].faces[face.face],
-             1.,
-             true,
-             boundary_residuals(
-               face,
-               fields,
-               &tractions[(face.cell * n_faces + face.face) * n_face_points])});
+      {
+        const Residuals residuals = boundary_residuals(
+          face,
+          fields,
+          &tractions[(face.cell * n_faces + face.face) * n_face_points]);
+        visit({face.cell,
+               shapes[cells[face.cell].shape].faces[face.face],
+               1.,
+               true,
+               residuals});
+      }
   }
 
 
@@ -371,10 +375,8 @@ namespace Viscoplastic
   double
   ResidualEstimator<dim>::factor(const LocalResiduals &r) const
   {
-    double area = 0.;
-    for (const double weight : r.face.weights)
-      area += weight;
-    const double width = shapes[cells[r.cell].shape].volume * r.share / area;
+    const double width =
+      shapes[cells[r.cell].shape].volume * r.share / r.face.area;
     return (r.is_at_boundary ? 1. / 6. : 1. / 24.) * width;
   }
 
@@ -385,10 +387,12 @@ namespace Viscoplastic
   ResidualEstimator<dim>::estimate(const Fields &fields) const
   {
     std::vector<double> eta(cells.size()); // squared
+    double              square = 0.;
     visit_residuals(fields, [&](const LocalResiduals &r) {
       const Stiffness &stiffness = cells[r.cell].stiffness;
-      double           square    = 0.;
-      for (unsigned int q = 0; q < n_face_points; ++q)
+      if (!r.are_again)
+        square = 0.;
+      for (unsigned int q = 0; !r.are_again && q < n_face_points; ++q)
         square += r.face.weights[q] * r.values[q] *
                   complied(stiffness, r.face.normals[q], r.values[q]);
       for (unsigned int q = 0; r.is_at_boundary && q < n_face_points; ++q)
@@ -415,7 +419,7 @@ namespace Viscoplastic
         const FaceShape &shape = shapes[cell.shape].faces[face.face];
         const double     stiffness =
           cell.stiffness.smallest_deviatoric_eigenvalue();
-        double square = 0., area = 0.;
+        double square = 0.;
         for (unsigned int q = 0; q < n_face_points; ++q)
           {
             Tensor<1, dim> density, u;
@@ -443,9 +447,8 @@ namespace Viscoplastic
               }
             const double k = stiffness / face.diameter;
             square += shape.weights[q] * 2. * k * k * delta * delta / stiffness;
-            area += shape.weights[q];
           }
-        eta[face.cell] += shapes[cell.shape].volume / area / 6. * square;
+        eta[face.cell] += shapes[cell.shape].volume / shape.area / 6. * square;
       }
     return local.by_active_index(eta);
   }

@@ -120,6 +120,11 @@ namespace Viscoplastic
       const auto         shift = other->vertex(0) - fine->vertex(0);
       for (unsigned int q = 0; q < n_face_points; ++q)
         face.partner[q] = nearest(side.positions, here.positions[q] - shift);
+      const Stiffness &a      = cells[face.cells[0]].stiffness,
+                      &b      = cells[face.cells[1]].stiffness;
+      face.is_within_material = a.is_isotropic() && b.is_isotropic() &&
+                                a.shear_modulus() == b.shear_modulus() &&
+                                a.bulk_modulus() == b.bulk_modulus();
       interior_faces.push_back(face);
     };
 

@@ -66,18 +66,17 @@ namespace Viscoplastic
 
 
 
-    /// Call @p add for each owned node with how far @p now is beyond() the
-    /// others there, and with its square.
+    /// Call @p add for each node, of dim numbers of @p n, with how far @p value
+    /// is beyond() the others there, and with its square.
     template <int dim, typename Add>
     void
-    for_each_node(const DistributedVector &before,
-                  const DistributedVector &now,
-                  const DistributedVector &after,
-                  const Add               &add)
+    for_each_node(const std::size_t n,
+                  const double     *left,
+                  const double     *value,
+                  const double     *right,
+                  const Add        &add)
     {
-      const double *left = before.begin(), *value = now.begin(),
-                   *right = after.begin();
-      for (unsigned int i = 0; i < now.locally_owned_size(); i += dim)
+      for (std::size_t i = 0; i < n; i += dim)
         {
           double square = 0.;
           for (unsigned int d = 0; d < dim; ++d)
@@ -173,13 +172,17 @@ namespace Viscoplastic
         Deviation           result{};
         double             &motion = result.motion;
         if (loads_vary)
-          for_each_node<dim>(accepted.forces.load.values,
-                             d.loads.assemble(time).values,
-                             end.forces.load.values,
-                             [&](const double distance, const double square) {
-                               sums[0] += distance * distance;
-                               sums[1] += square;
-                             });
+          {
+            const Load<dim> now = d.loads.assemble(time);
+            for_each_node<dim>(now.values.locally_owned_size(),
+                               accepted.forces.load.values.begin(),
+                               now.values.begin(),
+                               end.forces.load.values.begin(),
+                               [&](const double distance, const double square) {
+                                 sums[0] += distance * distance;
+                                 sums[1] += square;
+                               });
+          }
         if (bounds_vary)
           {
             const std::vector<double> now = bounds_at(time);
@@ -195,12 +198,16 @@ namespace Viscoplastic
               }
           }
         if (moves)
-          for_each_node<dim>(prescribed_before,
-                             prescribed_at(time),
-                             prescribed_after,
-                             [&](const double of_node, const double) {
-                               motion = std::max(motion, of_node);
-                             });
+          {
+            const std::vector<double> now = prescribed_at(time);
+            for_each_node<dim>(now.size(),
+                               prescribed_before.data(),
+                               now.data(),
+                               prescribed_after.data(),
+                               [&](const double of_node, const double) {
+                                 motion = std::max(motion, of_node);
+                               });
+          }
         if (slides)
           {
             const std::vector<Tensor<1, 2>> now =
@@ -233,20 +240,34 @@ namespace Viscoplastic
         return bounds;
       }
 
-      DistributedVector
+      /// At the nodes that have prescribed components, dim numbers each.
+      std::vector<double>
       prescribed_at(const double time) const
       {
-        DistributedVector values = d.space.owned_vector();
-        d.space.set_prescribed(time, values);
+        std::vector<double> values;
+        if (const auto &axial = d.scene().axial_strain;
+            axial && d.space.owned_axial())
+          {
+            values.resize(dim);
+            values[0] = d.space.axial_length * axial->value(Point<dim>(), time);
+          }
+        for (const auto &node : d.space.boundary_nodes())
+          if (d.space.frame(node.frame).n_fixed > 0)
+            {
+              const Tensor<1, dim> at_node = d.space.prescribed_at(node, time);
+              values.insert(values.end(),
+                            at_node.begin_raw(),
+                            at_node.end_raw());
+            }
         return values;
       }
 
       const Discretization<dim> &d;
       const EvaluatedState<dim> &accepted, &end;
       const double               t_old;
-      std::vector<double>        rates, bounds_before, bounds_after;
-      DistributedVector          prescribed_before, prescribed_after;
-      std::vector<Tensor<1, 2>>  sliding;
+      std::vector<double> rates, bounds_before, bounds_after, prescribed_before,
+        prescribed_after;
+      std::vector<Tensor<1, 2>> sliding;
     };
   } // namespace
 

@@ -135,7 +135,7 @@ namespace Viscoplastic
                    const FlowRate            &accepted_rate,
                    EvaluatedState<dim>       &end)
         : stress_space(laws.stress_space)
-        , decay(laws, old.state, end.state)
+        , decay(laws, old.state, end)
         , now(decay.now)
         , defect(defect)
         , has_slope(has_slope)
@@ -162,11 +162,10 @@ namespace Viscoplastic
         // A power of a stress that grows is not linear in a long step.
         if (defect.first < 0. && !laws.have_constant_tangents())
           half_way = rate_half_way(laws, accepted, state);
-        if (has_predictor)
+        if (has_predictor && laws.thermal)
           {
-            unflowed = accepted.z;
-            if (laws.thermal)
-              laws.thermal->follow(accepted.t, state.t, unflowed);
+            heated = accepted.z;
+            laws.thermal->follow(accepted.t, state.t, heated);
           }
       }
 
@@ -174,13 +173,12 @@ namespace Viscoplastic
       void
       add()
       {
-        state.time_error = accepted.time_error;
-        if (is_second)
-          state.rate_slope.resize(accepted.rate_slope.size());
+        state.time_error    = accepted.time_error;
+        state.rate_slope    = accepted.rate_slope;
         state.carried_error = accepted.carried_error;
         state.history_error = accepted.history_error;
-        state.history_slope.resize(accepted.history_slope.size());
-        std::size_t i = 0;
+        state.history_slope = accepted.history_slope;
+        std::size_t i       = 0;
         for (std::size_t c = 0; c < stress_space.n_cells(); ++c)
           {
             enter(c);
@@ -192,7 +190,6 @@ namespace Viscoplastic
         ErrorEstimate &estimate      = end.errors;
         estimate.time_indicator      = std::sqrt(sums[of_step]);
         estimate.time                = std::sqrt(sums[of_all_steps]);
-        estimate.irreversible_norm   = std::sqrt(sums[of_z]);
         estimate.irreversible_change = std::sqrt(sums[of_change]);
         const double rate            = std::sqrt(sums[of_rate]);
         estimate.creep_path          = old.errors.creep_path + k * rate;
@@ -211,7 +208,10 @@ namespace Viscoplastic
         stiffness = decay.stiffness;
         remembers = law && law->n_history_variables > 0;
         needs_stress =
-          law && ((fades && (of_loads > 0. || !decay.is_uniform)) || remembers);
+          law &&
+          ((fades && (of_loads > 0. || decay.asks_for_stress)) || remembers);
+        is_plain =
+          !remembers && !(fades && law) && !(onset > 0.) && !decay.growth;
         if (needs_stress)
           stress_space.strains(c, state.u.begin(), strains.data());
       }
@@ -219,19 +219,44 @@ namespace Viscoplastic
       void
       add_at(const std::size_t c, const unsigned int s, const std::size_t i)
       {
-        const SymmetricTensor<2, 3> change =
-          end.rate->rate[i] - accepted_rate.rate[i];
-        SymmetricTensor<2, 3> all =
-          defect_of(accepted_rate.rate[i],
-                    end.rate->rate[i],
-                    has_predictor ? state.z[i] - unflowed[i] :
-                                    SymmetricTensor<2, 3>(),
-                    i,
-                    accepted.rate_slope,
-                    state.rate_slope);
+        const SymmetricTensor<2, 3> &old_z = accepted.z[i], &z = state.z[i];
+        SymmetricTensor<2, 3>       &all = steps[s];
+
+        all = defect_of(accepted_rate.rate[i],
+                        end.rate->rate[i],
+                        z,
+                        heated.empty() ? old_z : heated[i],
+                        i,
+                        accepted.rate_slope,
+                        state.rate_slope);
         if (!half_way.empty())
           all -= k / 3. *
                  (accepted_rate.rate[i] + end.rate->rate[i] - 2. * half_way[i]);
+        changes[s] = z - old_z;
+        if (is_plain)
+          {
+            state.time_error[i] += all;
+            if (carries)
+              state.carried_error[i] += all;
+          }
+        else
+          all = what_counts(c, s, i, all);
+        // Steps are chosen with the slope as the change of slope there.
+        if (!has_slope)
+          all +=
+            defect.second * k * (end.rate->rate[i] - accepted_rate.rate[i]);
+      }
+
+      /// What is left of all of the defect at a sample, which is added to the
+      /// fields together with what becomes of earlier ones.
+      SymmetricTensor<2, 3>
+      what_counts(const std::size_t            c,
+                  const unsigned int           s,
+                  const std::size_t            i,
+                  const SymmetricTensor<2, 3> &all)
+      {
+        const SymmetricTensor<2, 3> change =
+          end.rate->rate[i] - accepted_rate.rate[i];
         SymmetricTensor<2, 3> step = all, local = all;
         CarriedError          carried;
         if (needs_stress)
@@ -250,7 +275,7 @@ namespace Viscoplastic
               remembers ? change_by_history(i) : SymmetricTensor<2, 3>();
             const double           share = share_of_loads(change);
             const ErrorRelaxation &relaxation =
-              decay.relaxation_at(stress, strain, point);
+              decay.relaxation_at(i, stress, strain, point);
             const SymmetricTensor<2, 3> driven =
               share * all + (1. - share) * of_history;
             step = driven + (1. - share) * (relaxation * (all - of_history));
@@ -267,11 +292,7 @@ namespace Viscoplastic
           state.carried_error[i] += carried.z + local;
         if (decay.growth)
           state.time_error[i] = decay.fading * state.time_error[i];
-        // Steps are chosen with the slope as the change of slope there.
-        if (!has_slope)
-          step += defect.second * k * change;
-        steps[s]   = step;
-        changes[s] = state.z[i] - accepted.z[i];
+        return step;
       }
 
       /// Those of a cell.
@@ -284,7 +305,6 @@ namespace Viscoplastic
         const std::size_t first = c * stress_space.n_samples;
         add(of_step, steps.data());
         add(of_all_steps, &state.time_error[first]);
-        add(of_z, &state.z[first]);
         add(of_change, changes.data());
         if (is_measured)
           add(of_rate, &end.rate->rate[first]);
@@ -292,10 +312,11 @@ namespace Viscoplastic
 
       /// What the step has left out of z or history at a sample, to leading
       /// order, whose rates at both ends are given; and the slope of that.
-      SymmetricTensor<2, 3>
+      DEAL_II_ALWAYS_INLINE inline SymmetricTensor<2, 3>
       defect_of(const SymmetricTensor<2, 3> &old_rate,
                 const SymmetricTensor<2, 3> &rate,
-                const SymmetricTensor<2, 3> &increment,
+                const SymmetricTensor<2, 3> &value,
+                const SymmetricTensor<2, 3> &old_value,
                 const std::size_t            i,
                 const IrreversibleStress    &old_slopes,
                 IrreversibleStress          &slopes) const
@@ -305,7 +326,7 @@ namespace Viscoplastic
         // Heun's method takes the rate of its prediction for that of the end.
         // At the limit of stability nothing relaxes, and no rate changes.
         if (has_predictor)
-          step += 0.5 * k * (old_rate + rate) - increment;
+          step += 0.5 * k * (old_rate + rate) - (value - old_value);
         if (is_second)
           slopes[i] = change / k;
         // There is no second derivative before the second step.
@@ -324,7 +345,8 @@ namespace Viscoplastic
         state.history_error[i] =
           carried.history + defect_of(accepted_rate.history_rate[i],
                                       end.rate->history_rate[i],
-                                      state.history[i] - accepted.history[i],
+                                      state.history[i],
+                                      accepted.history[i],
                                       i,
                                       accepted.history_slope,
                                       state.history_slope);
@@ -372,12 +394,12 @@ namespace Viscoplastic
       State<dim>                &state;
       const double               k, r, of_loads;
       const bool                 fades;
-      IrreversibleStress         half_way, unflowed;
+      IrreversibleStress         half_way, heated;
 
       // Of a cell:
       const ViscoplasticLaw *law       = nullptr;
       const Stiffness       *stiffness = nullptr;
-      bool                   remembers = false, needs_stress = false;
+      bool remembers = false, needs_stress = false, is_plain = false;
       std::vector<SymmetricTensor<2, 3>> strains;
       std::array<SymmetricTensor<2, 3>, GeometryInfo<dim>::vertices_per_cell>
         steps, changes;
@@ -390,7 +412,6 @@ namespace Viscoplastic
       {
         of_step,
         of_all_steps,
-        of_z,
         of_change,
         of_rate,
         n_norms

@@ -271,7 +271,7 @@ namespace Viscoplastic
     if (const auto factors = radial_factors(law, stress, k, stiffness, point))
       {
         const auto &[a, b, s] = *factors;
-        return {1. / (1. + a), (a - b) / ((1. + a) * (1. + b)), s, {}};
+        return radial_relaxation(a, b, s);
       }
     ErrorRelaxation result;
     result.any =

@@ -247,7 +247,7 @@ namespace Viscoplastic
               result[0] += samples.weight(c, s) *
                            (state.z[c * samples.n_samples + s] * strain[s]);
           }
-        const CellEnergies energies =
+        const FlowEnergies energies =
           energies_of_cell(laws, before, now, old, state, c);
         result[0] += energies.irreversible_energy;
         result[1] += energies.viscous_dissipation;

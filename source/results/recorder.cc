@@ -92,9 +92,9 @@ namespace Viscoplastic
     else
       balance.add_step({quantities.stored_energy,
                         quantities.external_work,
-                        quantities.stress.viscous_dissipation,
+                        quantities.flow.viscous_dissipation,
                         quantities.friction.dissipation,
-                        quantities.stress.thermal_work});
+                        quantities.flow.thermal_work});
     largest_force = std::max(largest_force, quantities.largest_force);
     contact_iterations += step.report.iterations;
     linear_iterations += step.report.linear_iterations;

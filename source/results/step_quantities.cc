@@ -18,10 +18,12 @@ namespace Viscoplastic
     {
       const AdmissibleSpace<dim> &space = stress_space.space;
       LargestPlace<dim>           result;
+      double                      square = 0.; // the largest, nearly
       for (std::size_t c = 0; c < space.cells.size(); ++c)
         {
           const auto &cell = space.cells[c];
-          if (!space.scene.is_present(cell->material_id()))
+          if (space.scene.has_stages() &&
+              !space.scene.is_present(cell->material_id()))
             continue;
           const unsigned int *const nodes = stress_space.nodes_of_cell(c);
           for (unsigned int v = 0; v < GeometryInfo<dim>::vertices_per_cell;
@@ -30,9 +32,12 @@ namespace Viscoplastic
               Tensor<1, dim> at_node;
               for (unsigned int d = 0; d < dim; ++d)
                 at_node[d] = u.begin()[nodes[v] + d];
+              if (at_node.norm_square() < square)
+                continue;
               const double length = stable_norm(at_node);
               if (result.may_take(length))
                 result.add(length, cell->vertex(v));
+              square = std::max(square, 0.99 * at_node.norm_square());
             }
         }
       result.reduce(space.communicator);
@@ -53,16 +58,42 @@ namespace Viscoplastic
              Utilities::MPI::sum(sum, d.space.communicator);
     }
 
+    /// energies_of_flow(), from forces unless samples have to tell. Collective.
+    template <int dim>
+    FlowEnergies
+    energies_of_step(const Discretization<dim> &d,
+                     const EvaluatedState<dim> &old,
+                     const EvaluatedState<dim> &end)
+    {
+      const auto &thermal = d.laws.thermal;
+      if (d.laws.any_own_energy ||
+          (thermal && thermal->expands && thermal->varies_in_time))
+        return energies_of_flow(d.laws, old.state, end.state);
+      const Forces<dim> &before = old.forces, &after = end.forces;
+      FlowEnergies       result;
+      result.irreversible_energy = after.irreversible_energy;
+      if (after.irreversible.size() > 0)
+        {
+          // The driving strain E^-1 sigma is that of u and E^-1 z.
+          DistributedVector flow(after.irreversible);
+          flow -= before.irreversible;
+          result.viscous_dissipation = before.irreversible_energy -
+                                       after.irreversible_energy -
+                                       0.5 * (flow * before.u + flow * after.u);
+        }
+      return result;
+    }
+
 
 
     /// The stored energy, from the integrals of the stress.
     template <int dim>
     double
-    stored_energy(const Forces<dim> &forces, const StressSummary<dim> &stress)
+    stored_energy(const Forces<dim> &forces, const FlowEnergies &flow)
     {
       // 1/2 int E^-1 sigma : sigma with sigma = E eps(u) + z.
       return forces.strain_energy + forces.irreversible_work +
-             stress.irreversible_energy;
+             flow.irreversible_energy;
     }
 
 
@@ -125,17 +156,10 @@ namespace Viscoplastic
     const Forces<dim>  &forces     = step.end.forces;
     const bool          is_initial = step.time_step.n == 0;
     StepQuantities<dim> result;
-    if (!is_initial && forces.irreversible.size() > 0)
-      {
-        DistributedVector flow(forces.irreversible);
-        flow -= old.forces.irreversible;
-        const double work = 0.5 * (flow * old.forces.u + flow * forces.u);
-        result.stress     = summarize_stress(d.laws, old.state, state, &work);
-      }
-    else
-      result.stress = summarize_stress(d.laws, old.state, state);
+    result.stress = summarize_stress(d.stress_space, state);
+    result.flow   = energies_of_step(d, old, step.end);
     result.stored_energy =
-      stored_energy(forces, result.stress) + energy_of_foundation(d, state);
+      stored_energy(forces, result.flow) + energy_of_foundation(d, state);
     DistributedVector        difference;
     const DistributedVector &u =
       reported_displacement(d.scene(), state, difference);
@@ -216,11 +240,9 @@ namespace Viscoplastic
   energies_on_mesh(const Discretization<dim> &discretization,
                    const EvaluatedState<dim> &of)
   {
-    return {
-      stored_energy(of.forces,
-                    summarize_stress(discretization.laws, of.state, of.state)) +
-        energy_of_foundation(discretization, of.state),
-      of.forces.u * of.forces.load.values};
+    return {stored_energy(of.forces, energies_of_step(discretization, of, of)) +
+              energy_of_foundation(discretization, of.state),
+            of.forces.u * of.forces.load.values};
   }
 
 

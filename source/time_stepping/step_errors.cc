@@ -28,9 +28,9 @@ namespace Viscoplastic
     {
       const State<dim>  &old = accepted.state, &state = end.state;
       const Forces<dim> &old_forces = accepted.forces, &forces = end.forces;
-      // |dz|^2 and |z|^2 of bodies that do not flow, (dz, eps(du)), the number
-      // of points that change, and of all points.
-      std::vector<double>     sums(5, 0.);
+      // |dz|^2 of bodies that do not flow, (dz, eps(du)), the number of points
+      // that change, and of all points.
+      std::vector<double>     sums(4, 0.);
       const StressSpace<dim> &space = discretization.stress_space;
       if (!discretization.scene().has_viscosity() && !state.z.empty())
         {
@@ -42,14 +42,16 @@ namespace Viscoplastic
                 change[s] = z[s] - old.z[c * space.n_samples + s];
               sums[0] +=
                 space.complementary_product(c, change.data(), change.data());
-              sums[1] += space.complementary_product(c, z, z);
             }
         }
       if (forces.irreversible.size() > 0)
-        for (unsigned int i = 0; i < forces.u.locally_owned_size(); ++i)
-          sums[2] += (forces.u.begin()[i] - old_forces.u.begin()[i]) *
-                     (forces.irreversible.begin()[i] -
-                      old_forces.irreversible.begin()[i]);
+        {
+          const double *u = forces.u.begin(), *old_u = old_forces.u.begin(),
+                       *z     = forces.irreversible.begin(),
+                       *old_z = old_forces.irreversible.begin();
+          for (unsigned int i = 0; i < forces.u.locally_owned_size(); ++i)
+            sums[1] += (u[i] - old_u[i]) * (z[i] - old_z[i]);
+        }
       for (unsigned int p = 0; p < state.contact.n_points(); ++p)
         {
           const auto holds = [&](const ContactState &contact) {
@@ -58,16 +60,15 @@ namespace Viscoplastic
                       contact.multiplier[p][0] :
                       contact.bound[p]) > 0.;
           };
-          sums[3] += holds(old.contact) != holds(state.contact) ? 1. : 0.;
+          sums[2] += holds(old.contact) != holds(state.contact) ? 1. : 0.;
         }
-      sums[4] = state.contact.n_points();
+      sums[3] = state.contact.n_points();
       Utilities::MPI::sum(sums, discretization.space.communicator, sums);
       // |sigma|^2 = a(u, u) + 2 (z, eps(u)) + |z|^2, of change and end.
       const ErrorEstimate &errors = end.errors;
       const double         strain = state.k * state.k * errors.velocity_square,
                    energy         = 2. * forces.strain_energy;
       sums[0] += errors.irreversible_change * errors.irreversible_change;
-      sums[1] += errors.irreversible_norm * errors.irreversible_norm;
       // Rounding may make differences and energies negative.
       const auto share = [](const double part, const double whole) {
         return whole > 0. ? std::sqrt(std::max(part, 0.) / whole) :
@@ -75,9 +76,10 @@ namespace Viscoplastic
       };
       // Points count twice, since dual solutions jump when they change.
       return std::max(share(strain, energy),
-                      share(strain + 2. * sums[2] + sums[0],
-                            energy + 2. * forces.irreversible_work + sums[1])) +
-             (sums[4] > 0. ? 2. * sums[3] / sums[4] : 0.);
+                      share(strain + 2. * sums[1] + sums[0],
+                            energy + 2. * (forces.irreversible_work +
+                                           forces.irreversible_energy))) +
+             (sums[3] > 0. ? 2. * sums[2] / sums[3] : 0.);
     }
 
 
@@ -247,9 +249,11 @@ namespace Viscoplastic
         errors.indicator =
           std::clamp(2. * indicator - step.stiffness() * left, 0., indicator);
       }
-    errors.size   = scene.parameters.error_control.has_tolerance() ?
-                      estimate.energy_norm :
-                      std::max(estimate.energy_norm, estimate.irreversible_norm);
+    errors.size = estimate.energy_norm;
+    if (scene.has_viscosity() &&
+        !scene.parameters.error_control.has_tolerance())
+      errors.size =
+        std::max(errors.size, std::sqrt(2. * end.forces.irreversible_energy));
     errors.before = accepted.errors.time + accepted.errors.friction;
     if (is_of_quantity)
       make_errors_of_quantity(discretization,

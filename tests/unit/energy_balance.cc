@@ -34,9 +34,19 @@ namespace
         const AcceptedStep<dim>   step = body.stepper->next(body.accepted);
         const StepQuantities<dim> quantities =
           measure_step(*body.discretization, body.accepted, step);
+        // From nodal forces, and sample by sample.
+        const FlowEnergies flow = energies_of_flow(body.discretization->laws,
+                                                   body.accepted.state,
+                                                   step.end.state);
+        EXPECT_NEAR(quantities.flow.irreversible_energy,
+                    flow.irreversible_energy,
+                    1e-13 * quantities.stored_energy);
+        EXPECT_NEAR(quantities.flow.viscous_dissipation,
+                    flow.viscous_dissipation,
+                    1e-13 * quantities.stored_energy);
         balance.add_step({quantities.stored_energy,
                           quantities.external_work,
-                          quantities.stress.viscous_dissipation,
+                          quantities.flow.viscous_dissipation,
                           quantities.friction.dissipation});
         body.accepted = step.end;
       }

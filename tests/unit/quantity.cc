@@ -8,6 +8,7 @@
 
 #include "refusals.h"
 #include "stepping_body.h"
+#include <viscoplastic_contact/error/error_decay.h>
 
 namespace
 {
@@ -353,6 +354,61 @@ namespace
           EXPECT_NEAR(products[i] - more[i], expected, 1e-9);
           EXPECT_NEAR(half[i] - half_more[i], 2. * expected, 1e-9);
         }
+  }
+
+
+
+  TYPED_TEST(Quantity, RelaxationOfErrorsAsksNoLawOfRadialFlow)
+  {
+    // Rates say what becomes of errors, and only where those are carried on.
+    constexpr int     dim = TypeParam::value;
+    const std::string norton =
+      subsection("Material",
+                 "set Law = norton\nset Stress history = quadrature points\n" +
+                   subsection("norton",
+                              "set Rate factor = 50\nset Stress cap = 9")) +
+      time("forward Euler", "1: 8");
+    SteppingBody<dim> plain(norton),
+      body(norton + quantity("point0_x") + output_point<dim>());
+    plain.advance(1);
+    EXPECT_TRUE(plain.accepted.rate->relaxation.empty());
+    body.advance(3);
+    const EvaluatedState<dim> &end   = body.accepted;
+    const StressSpace<dim>    &space = body.discretization->stress_space;
+    ErrorDecay<dim>            decay(body.discretization->laws, end.state, end);
+    std::vector<SymmetricTensor<2, 3>> strains(space.n_samples);
+    SymmetricTensor<2, 3>              error;
+    for (unsigned int e = 0; e < 6; ++e)
+      error.access_raw_entry(e) = 1. + e * e;
+    double smallest = 1.; // part that is left
+    for (std::size_t c = 0; c < space.n_cells(); ++c)
+      {
+        decay.enter(c);
+        EXPECT_FALSE(decay.asks_for_stress);
+        space.strains(c, end.state.u.begin(), strains.data());
+        for (unsigned int s = 0; s < space.n_samples; ++s)
+          {
+            const std::size_t           i         = c * space.n_samples + s;
+            const Stiffness            &stiffness = space.moduli(c);
+            const SymmetricTensor<2, 3> stress =
+              stiffness.stress(strains[s]) + end.state.z[i];
+            const SymmetricTensor<2, 3> left =
+                                          decay.relaxation_at(i, {}, {}, {}) *
+                                          error,
+                                        of_law =
+                                          error_relaxation(*decay.law,
+                                                           stress,
+                                                           strains[s],
+                                                           decay.k,
+                                                           stiffness,
+                                                           decay.now.point(c,
+                                                                           s)) *
+                                          error;
+            EXPECT_LT((left - of_law).norm(), 1e-13 * error.norm());
+            smallest = std::min(smallest, left.norm() / error.norm());
+          }
+      }
+    EXPECT_LT(Utilities::MPI::min(smallest, MPI_COMM_WORLD), 0.97);
   }
 
 

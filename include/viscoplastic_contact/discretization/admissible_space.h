@@ -237,10 +237,6 @@ namespace Viscoplastic
               scene};
     }
 
-    /// Write the prescribed values at time t into a vector in frames.
-    void
-    set_prescribed(const double t, DistributedVector &in_frames) const;
-
     /// Owned degrees of freedom that are no unknowns: prescribed or hanging;
     /// one entry for each owned index.
     const std::vector<bool> &
@@ -265,6 +261,15 @@ namespace Viscoplastic
       Point<dim>              position;
       unsigned int            frame; // index into frames
     };
+
+    /// The prescribed values at time t of a node, in the order of the fixed
+    /// components of its frame; zero behind them.
+    Tensor<1, dim>
+    prescribed_at(const BoundaryNode &node, const double t) const;
+
+    /// Write the prescribed values at time t into a vector in frames.
+    void
+    set_prescribed(const double t, DistributedVector &in_frames) const;
 
     const std::vector<BoundaryNode> &
     boundary_nodes() const

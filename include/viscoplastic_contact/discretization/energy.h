@@ -6,7 +6,7 @@
 
 namespace Viscoplastic
 {
-  /// Integrals of the stress of a state, and of the dissipation in its step.
+  /// Integrals of the stress of a state.
   template <int dim>
   struct StressSummary
   {
@@ -21,6 +21,17 @@ namespace Viscoplastic
     double mean_strain = 0.;
     /// (int sigma : sigma)^(1/2) of cell means.
     double stress_norm = 0.;
+  };
+
+  /// Collective.
+  template <int dim>
+  StressSummary<dim>
+  summarize_stress(const StressSpace<dim> &stress_space,
+                   const State<dim>       &state);
+
+  /// The energies of z in the step that led to a state, of a cell or of all.
+  struct FlowEnergies
+  {
     /// 1/2 int E^-1 z : z, and what laws with an energy of their own store
     /// beyond 1/2 int E^-1 sigma : sigma.
     double irreversible_energy = 0.;
@@ -34,38 +45,23 @@ namespace Viscoplastic
     double thermal_work = 0.;
   };
 
-  /// @p old_state: the state before the step, or @p state itself; @p
-  /// work_on_strain: (z_n - z_{n-1}, eps(u)) of the mean u of both, where that
-  /// is known, which spares strains of samples where laws have no energy of
-  /// their own. Collective.
+  /// @p before and @p now are laws.at() of both states.
   template <int dim>
-  StressSummary<dim>
-  summarize_stress(const FlowLaws<dim> &laws,
-                   const State<dim>    &old_state,
-                   const State<dim>    &state,
-                   const double        *work_on_strain = nullptr);
-
-  /// The stored energy of a cell and its viscous dissipation in the step that
-  /// led to a state.
-  struct CellEnergies
-  {
-    SymmetricTensor<2, 3> mean_strain, mean_stress;
-    /// Integrals, see StressSummary.
-    double irreversible_energy = 0., viscous_dissipation = 0.,
-           thermal_work = 0.;
-  };
-
-  /// @p before and @p now are laws.at() of both states. @p without_strain: the
-  /// dissipation is that of E^-1 z alone, the part of strains missing.
-  template <int dim>
-  CellEnergies
+  FlowEnergies
   energies_of_cell(const FlowLaws<dim>                  &laws,
                    const typename FlowLaws<dim>::AtTime &before,
                    const typename FlowLaws<dim>::AtTime &now,
                    const State<dim>                     &old_state,
                    const State<dim>                     &state,
-                   const std::size_t                     cell,
-                   const bool without_strain = false);
+                   const std::size_t                     cell);
+
+  /// Of all cells; @p old_state: the state before the step, or @p state itself.
+  /// Collective.
+  template <int dim>
+  FlowEnergies
+  energies_of_flow(const FlowLaws<dim> &laws,
+                   const State<dim>    &old_state,
+                   const State<dim>    &state);
 
   /// norm(sigma - P0 sigma)/norm(sigma) with sigma = E eps(u) + z: how much of
   /// the stress the cell means do not see. Collective.

@@ -181,6 +181,10 @@ namespace Viscoplastic
     Point<3> critical_position = {};
     /// H at each sample, where there are history variables.
     IrreversibleStress history_rate = {};
+    /// The rates at which radial flow relaxes stress, at each sample: across
+    /// its deviator s, |G|/|s|, and along. Only for quantities of interest
+    /// whose errors are carried on from step to step.
+    std::vector<std::array<double, 2>> relaxation = {};
   };
 
   /// The rate G at all samples of all cells, by one evaluation of the law a

@@ -20,8 +20,8 @@ namespace Viscoplastic
     Load<dim> load;
     /// (z, eps(.)), empty if the scene has no z, and a(u, .) + (z, eps(.)).
     DistributedVector irreversible, internal;
-    /// 1/2 a(u, u) and (z, eps(u)).
-    double strain_energy = 0., irreversible_work = 0.;
+    /// 1/2 a(u, u), (z, eps(u)) and 1/2 int E^-1 z : z.
+    double strain_energy = 0., irreversible_work = 0., irreversible_energy = 0.;
 
     /// a(u, .).
     DistributedVector

@@ -148,16 +148,13 @@ namespace Viscoplastic
     }
 
     /// int E^-1 a : b over a cell, from its samples.
-    double
+    DEAL_II_ALWAYS_INLINE double
     complementary_product(const std::size_t            cell,
                           const SymmetricTensor<2, 3> *a,
                           const SymmetricTensor<2, 3> *b) const
     {
-      const Stiffness &stiffness = moduli(cell);
-      double           sum       = 0.;
-      for (unsigned int s = 0; s < n_samples; ++s)
-        sum += weight(cell, s) * stiffness.complementary_product(a[s], b[s]);
-      return sum;
+      return moduli(cell).complementary_product(
+        n_samples, &weights[shapes[cell] * n_samples], a, b);
     }
 
     /// sigma = E eps(u) + z, cell means; @p z may be empty (no viscosity).

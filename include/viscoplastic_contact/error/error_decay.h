@@ -12,28 +12,31 @@ namespace Viscoplastic
   class ErrorDecay
   {
   public:
-    ErrorDecay(const FlowLaws<dim> &laws,
-               const State<dim>    &old,
-               const State<dim>    &end)
+    ErrorDecay(const FlowLaws<dim>       &laws,
+               const State<dim>          &old,
+               const EvaluatedState<dim> &end)
       : stress_space(laws.stress_space)
-      , now(laws.at(end.t, old.history))
-      , k(end.k)
+      , now(laws.at(end.state.t, old.history))
+      , k(end.state.k)
+      , rate(*end.rate)
     {}
 
     /// Set what all samples of a cell have in common.
     void
     enter(const std::size_t c);
 
-    /// What stress at a given strain leaves of its error, at a sample of this
-    /// cell.
+    /// What stress at a given strain leaves of its error, at sample @p i, one
+    /// of this cell. State and point count where it asks_for_stress.
     const ErrorRelaxation &
-    relaxation_at(const SymmetricTensor<2, 3> &stress,
+    relaxation_at(const std::size_t            i,
+                  const SymmetricTensor<2, 3> &stress,
                   const SymmetricTensor<2, 3> &strain,
                   const LawPoint              &point);
 
     const StressSpace<dim>              &stress_space;
     const typename FlowLaws<dim>::AtTime now;
     const double                         k;
+    const FlowRate                      &rate;
 
     // Of the cell:
     const ViscoplasticLaw               *law       = nullptr;
@@ -42,12 +45,12 @@ namespace Viscoplastic
     /// What is left of an error that makes no stress, where it grows() with
     /// the strain.
     SymmetricTensor<4, 3> fading;
-    bool                  is_uniform = false;
+    bool                  asks_for_stress = false;
 
   private:
     ErrorRelaxation relaxation;
-    bool            is_known = false;
-    std::size_t     cell     = 0;
+    bool            is_uniform = false, is_radial = false, is_known = false;
+    std::size_t     cell = 0;
   };
 
 

@@ -134,9 +134,9 @@ namespace Viscoplastic
     double energy_norm = 0.;
     /// a(du_n, du_n).
     double velocity_square = 0.;
-    /// (int E^-1 z : z)^{1/2} and the same of the change of z in the step; with
-    /// viscosity only.
-    double irreversible_norm = 0., irreversible_change = 0.;
+    /// (int E^-1 dz : dz)^{1/2} of the change of z in the step; with viscosity
+    /// only.
+    double irreversible_change = 0.;
     /// The sum of k |G| of all steps, in the same norm; and the time in which
     /// the last |G| alone makes that.
     double creep_path = 0., creep_time = 0.;

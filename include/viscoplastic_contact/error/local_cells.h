@@ -79,6 +79,7 @@ namespace Viscoplastic
       std::array<Tensor<1, dim>, n_face_points> positions; // from vertex 0
       std::array<double, n_face_points>         weights;
       std::array<Hoops, n_face_points>          hoops;
+      double                                    area = 0.;
 
       void
       reinit(const Point<dim>            &vertex_0,

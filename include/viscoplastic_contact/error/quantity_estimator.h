@@ -241,6 +241,8 @@ namespace Viscoplastic
       DualSolution<dim>                                      solution;
       std::optional<typename ResidualEstimator<dim>::OfDual> residuals;
       typename RecoveryEstimator<dim>::OfDual                recovered;
+      /// eps(w) at the samples times their weights.
+      IrreversibleStress strains;
     };
 
     /// DualProblem::renew() of what is kept. Collective. Throws ExcMessage.

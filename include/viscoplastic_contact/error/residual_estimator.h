@@ -168,6 +168,8 @@ namespace Viscoplastic
       std::array<unsigned int, 2> tractions;
       /// The point of the second side at each point of the first.
       std::array<unsigned char, n_face_points> partner;
+      /// Whether both cells are of one isotropic material.
+      bool is_within_material = false;
     };
 
     struct BoundaryFace
@@ -309,7 +311,10 @@ namespace Viscoplastic
       const FaceShape &face;
       double           share; // of the cell's face
       bool             is_at_boundary;
-      Residuals        values;
+      const Residuals &values;
+      /// Whether those of the last visit are the same, of a cell of the same
+      /// material.
+      bool are_again = false;
     };
 
     /// 1/24 or 1/6 h, see above.

@@ -150,10 +150,31 @@ namespace Viscoplastic
     {
       if (any)
         return *any * error;
-      return error + (of_deviators - 1.) * deviator(error) +
-             more_along * (direction * error) * direction;
+      SymmetricTensor<2, 3> result = of_deviators * error;
+      if (more_along != 0.)
+        result += (more_along * (direction * error)) * direction;
+      const double pressure = (1. - of_deviators) / 3. * trace(error);
+      for (unsigned int d = 0; d < 3; ++d)
+        result[d][d] += pressure;
+      return result;
     }
   };
+
+  /// Of radial flow that shortens the deviator of a trial stress by 1/(1 + a),
+  /// and changes of it along its @p direction, of any length, by 1/(1 + b).
+  inline ErrorRelaxation
+  radial_relaxation(const double                 a,
+                    const double                 b,
+                    const SymmetricTensor<2, 3> &direction)
+  {
+    ErrorRelaxation result;
+    const double    square = direction * direction;
+    result.of_deviators    = 1. / (1. + a);
+    if (square > 0.)
+      result.more_along = (a - b) / ((1. + a) * (1. + b) * square);
+    result.direction = direction;
+    return result;
+  }
 
   ErrorRelaxation
   error_relaxation(const ViscoplasticLaw       &law,

@@ -69,6 +69,13 @@ namespace Viscoplastic
     complementary_product(const SymmetricTensor<2, 3> &a,
                           const SymmetricTensor<2, 3> &b) const;
 
+    /// The sum of weights times this at @p n points.
+    double
+    complementary_product(const unsigned int           n,
+                          const double                *weights,
+                          const SymmetricTensor<2, 3> *a,
+                          const SymmetricTensor<2, 3> *b) const;
+
     /// E^-1 stress : stress.
     double
     complementary_square(const SymmetricTensor<2, 3> &stress) const
@@ -218,6 +225,28 @@ namespace Viscoplastic
       return anisotropic_strain(a) * b;
     const double pressures = trace(a) * trace(b) / 9.;
     return (a * b - 3. * pressures) / (2. * mu) + pressures / bulk;
+  }
+
+
+
+  DEAL_II_ALWAYS_INLINE inline double
+  Stiffness::complementary_product(const unsigned int           n,
+                                   const double                *weights,
+                                   const SymmetricTensor<2, 3> *a,
+                                   const SymmetricTensor<2, 3> *b) const
+  {
+    double products = 0., pressures = 0.;
+    for (unsigned int i = 0; i < n; ++i)
+      if (anisotropic_data)
+        products += weights[i] * (anisotropic_strain(a[i]) * b[i]);
+      else
+        {
+          products += weights[i] * (a[i] * b[i]);
+          pressures += weights[i] * (trace(a[i]) * trace(b[i]));
+        }
+    return anisotropic_data ?
+             products :
+             (products - pressures / 3.) / (2. * mu) + pressures / (9. * bulk);
   }
 
 

@@ -10,7 +10,7 @@ namespace Viscoplastic
   {
     double stored;
     /// External work and dissipation in the step, in units of energy; see
-    /// StressSummary and FrictionIdentities.
+    /// FlowEnergies and FrictionIdentities.
     double external_work, viscous_dissipation, friction_dissipation;
     double thermal_work = 0.;
   };

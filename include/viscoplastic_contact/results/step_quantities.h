@@ -15,6 +15,7 @@ namespace Viscoplastic
   struct StepQuantities
   {
     StressSummary<dim> stress;
+    FlowEnergies       flow;
     /// The energy stored at the end of the step, and what of it is in springs.
     double stored_energy = 0., spring_energy = 0.;
     /// The work of loads, prescribed displacements and moving foundations in

@@ -375,6 +375,36 @@ namespace Viscoplastic
 
 
   template <int dim>
+  void
+  DualProblem<dim>::prescribe_work_of_pressure(const ContactState &contact,
+                                               const CoulombLaw   &law,
+                                               const double        slip_steps,
+                                               DistributedVector  &w) const
+  {
+    const ContactLayout &face = discretization.face->layout();
+    Vector<double>       on_face(face.n_dofs());
+    for (unsigned int p = 0; p < contact.n_points(); ++p)
+      if (!face.points[p].is_obstacle && !contact.sticks[p])
+        {
+          const unsigned int node = face.points[p].node;
+          unsigned int       o    = face.first_obstacle(node);
+          const double       path = slip_steps * contact.slip[p].norm();
+          for (const double coefficient : law.of_pressure[p])
+            {
+              Tensor<1, 2> worth;
+              worth[0] = coefficient * path;
+              face.set_node_values(face.node_values(on_face, node) +
+                                     motion_with_slip(face.points[o++], worth),
+                                   node,
+                                   on_face);
+            }
+        }
+    discretization.face->restriction().set(on_face, w);
+  }
+
+
+
+  template <int dim>
   DistributedVector
   DualProblem<dim>::density(const Vector<double> &force) const
   {

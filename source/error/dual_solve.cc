@@ -61,6 +61,7 @@ namespace Viscoplastic
                           const DistributedMatrix &matrix,
                           const ContactState      &contact,
                           const CoulombLaw        *law,
+                          const double             slip_steps,
                           DualSolution<dim>       &dual) const
   {
     const ContactFace<dim> *face = discretization.slipping_face();
@@ -72,7 +73,11 @@ namespace Viscoplastic
         (face == nullptr ||
          result.truncation.equals(dual.truncation, face->layout())))
       return false;
-    result.w                     = prescribed();
+    result.w = prescribed();
+    // The norm of w counts in full where bounds are those of the step before.
+    if (quantity.is_sum() && law != nullptr &&
+        !discretization.scene().has_bounds_of_step_before())
+      prescribe_work_of_pressure(contact, *law, slip_steps, result.w);
     const DistributedVector load = right_side(contact);
     // The sizes of the step that has been solved are not those of w.
     Forces<dim> forces;

@@ -76,12 +76,13 @@ namespace Viscoplastic
 
   template <int dim>
   Vector<double>
-  QuantityEstimator<dim>::products_of_creep(const State<dim> &state,
-                                            const FlowRate   &rate,
-                                            const Creep      &creep,
-                                            const CoulombLaw *law,
-                                            Vector<double>   &sides) const
+  QuantityEstimator<dim>::products_of_creep(const EvaluatedState<dim> &end,
+                                            const Creep               &creep,
+                                            const CoulombLaw          *law,
+                                            Vector<double> &sides) const
   {
+    const State<dim>       &state        = end.state;
+    const FlowRate         &rate         = *end.rate;
     const StressSpace<dim> &stress_space = discretization.stress_space;
     // After a thousand relaxation times the body is as good as incompressible.
     // To half a power of two, so that linear laws have few matrices.
@@ -118,7 +119,7 @@ namespace Viscoplastic
       dual_of_creep = {};
     renew(solver_of_tangents(*tangent, is_new),
           tangent->matrix(),
-          state.contact,
+          end,
           law,
           dual_of_creep);
     const DualSolution<dim> &dual = dual_of_creep.solution;

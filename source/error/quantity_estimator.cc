@@ -36,13 +36,18 @@ namespace Viscoplastic
 
   template <int dim>
   void
-  QuantityEstimator<dim>::renew(BulkSolver              &solver,
-                                const DistributedMatrix &matrix,
-                                const ContactState      &contact,
-                                const CoulombLaw        *law,
-                                KeptDual                &kept) const
+  QuantityEstimator<dim>::renew(BulkSolver                &solver,
+                                const DistributedMatrix   &matrix,
+                                const EvaluatedState<dim> &end,
+                                const CoulombLaw          *law,
+                                KeptDual                  &kept) const
   {
-    if (!dual_problem.renew(solver, matrix, contact, law, kept.solution))
+    if (!dual_problem.renew(solver,
+                            matrix,
+                            end.state.contact,
+                            law,
+                            end.errors.quantity.slip_steps,
+                            kept.solution))
       return;
     kept.residuals.reset();
     kept.recovered = {};
@@ -159,8 +164,7 @@ namespace Viscoplastic
         if (creeps || (d.mean_dilatation && dual.norm > 0.))
           {
             if (creeps)
-              indicators =
-                products_of_creep(state, *end.rate, creep, law, sides);
+              indicators = products_of_creep(end, creep, law, sides);
             else
               indicators = space_estimator.multiply_recovered(
                 state, dual, nullptr, {1., {}}, dual_of_step.recovered);
@@ -334,7 +338,7 @@ namespace Viscoplastic
       carry_time_error(solver, linearized, accepted.state, end);
     if (!is_sum && d.slipping_face())
       hold(solver, accepted, state.contact, linearized, end.errors);
-    renew(solver, d.matrix, state.contact, linearized, dual_of_step);
+    renew(solver, d.matrix, end, linearized, dual_of_step);
     const DualSolution<dim> &dual = dual_of_step.solution;
     // |J| <= a(w, w)^{1/2} a(u, u)^{1/2}; of a force that statics fixes w is a
     // rigid motion.
@@ -386,7 +390,9 @@ namespace Viscoplastic
                          estimate.dual_norm;
     estimate.friction           = bound;
     estimate.friction_indicator = added;
-    if (!is_sum && !d.scene().has_bounds_of_step_before())
+    // Turns hardly change the pressures that past slip is multiplied by.
+    if ((!is_sum || linearized != nullptr) &&
+        !d.scene().has_bounds_of_step_before())
       {
         estimate.turning = before.turning;
         estimate.resting = before.resting;

@@ -36,6 +36,9 @@ namespace Viscoplastic
     Utilities::MPI::sum(sums, discretization.space.communicator, sums);
     const QuantityEstimate &before = accepted.errors.quantity;
     const double            share  = sums[0] > 0. ? sums[1] / sums[0] : 0.;
+    const double            work   = estimate.value - before.value;
+    estimate.slip_work             = (1. - share) * before.slip_work + work;
+    estimate.slip_steps            = work > 0. ? estimate.slip_work / work : 0.;
     estimate.settled_space =
       before.settled_space +
       share * (before.space_correction - before.settled_space);

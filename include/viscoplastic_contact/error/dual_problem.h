@@ -61,14 +61,16 @@ namespace Viscoplastic
   ///   sign = 1; of both on one boundary, times the part of a point's area that
   ///   is there;
   /// - of the work of friction in all steps, as long as what slips goes on in
-  ///   the same direction, l(v) = sum_slipping lambda_c . v_c: sign = 1.
+  ///   the same direction, l(v) = sum_slipping lambda_c . v_c; where the
+  ///   pressure of the step itself makes bounds, w is along the normals what it
+  ///   is of a contact force, but with mu times the slip up to now as the
+  ///   factor of each pressure: sign = 1.
   ///
   /// With Coulomb's law of the step's own pressure, lambda_c of a slipping
   /// point changes with its pressure, too, and the equations of such a point
   /// are those of its tilt (CoulombLaw::tilt()). The dual system is the
   /// transposed one: v still is zero across the foundation there, but w moves
-  /// into it by mu times its part along the slip. (Of the work of friction,
-  /// what the pressure makes of past slip is left out.)
+  /// into it by mu times its part along the slip.
   template <int dim>
   class DualProblem
   {
@@ -96,20 +98,22 @@ namespace Viscoplastic
           const CoulombLaw   *law = nullptr) const
     {
       DualSolution<dim> dual;
-      renew(solver, discretization.matrix, contact, law, dual);
+      renew(solver, discretization.matrix, contact, law, 1., dual);
       return dual;
     }
 
     /// Make @p dual the solution of a state, with any @p matrix in the place of
     /// that of a(.,.), unless it is one with this matrix already for which all
     /// points stick, or slip in the same directions and with the same springs.
-    /// (What loads the work of friction is never the same.) Returns whether it
-    /// is another one now. Collective. Throws ExcMessage.
+    /// (What loads the work of friction is never the same: what slips has done
+    /// so for @p slip_steps steps like this one.) Returns whether it is another
+    /// one now. Collective. Throws ExcMessage.
     bool
     renew(BulkSolver              &solver,
           const DistributedMatrix &matrix,
           const ContactState      &contact,
           const CoulombLaw        *law,
+          double                   slip_steps,
           DualSolution<dim>       &dual) const;
 
     /// The solution that renew() has made, of its w, here with ghosts, and its
@@ -167,6 +171,14 @@ namespace Viscoplastic
     /// The prescribed values of w, in frames.
     DistributedVector
     prescribed() const;
+
+    /// Those of the work of friction: what a pressure has been worth in so many
+    /// steps.
+    void
+    prescribe_work_of_pressure(const ContactState &contact,
+                               const CoulombLaw   &law,
+                               double              slip_steps,
+                               DistributedVector  &w) const;
 
     /// What holds w at a state; or u, if not @p transposed.
     FaceTruncation

@@ -71,6 +71,9 @@ namespace Viscoplastic
     /// If the quantity is a sum over the steps: the parts of both corrections
     /// that later steps can no longer change.
     double settled_space = 0., settled_time = 0.;
+    /// The work of friction of what slips, under its present bounds, since it
+    /// has begun to; and over that of the last step.
+    double slip_work = 0., slip_steps = 1.;
     /// The settled part of a force as it was when points came to rest; since
     /// then stress has relaxed.
     double rest_space = 0.;
@@ -98,8 +101,8 @@ namespace Viscoplastic
     {
       ErrorParts::exchange(archive);
       archive &value &space_correction &time_correction &settled_space
-        &settled_time &rest_space &unsigned_space &space_at_least &of_sides
-          &of_boundary &turning &resting &dual_norm &dual_error;
+        &settled_time &slip_work &rest_space &unsigned_space &space_at_least
+          &of_sides &of_boundary &turning &resting &dual_norm &dual_error;
     }
   };
 

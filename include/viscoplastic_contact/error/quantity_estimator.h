@@ -60,7 +60,9 @@ namespace Viscoplastic
   /// did. That share of it is settled (settled_space, settled_time), and so is
   /// -d(rho)/rho of it where bounds change, by parts. The bounds
   /// at the ends of steps, in place of those in between, make a quadrature
-  /// error -1/2 (rho_n - rho_{n-1}) |s| of known sign, settled at once.
+  /// error -1/2 (rho_n - rho_{n-1}) |s| of known sign, settled at once. Where
+  /// the pressure makes bounds its errors count for the slip up to now, taken
+  /// as that of so many steps like the last one (slip_steps).
   ///
   /// Points that stick keep the error e_c of where they have come to rest, and
   /// any other quantity feels it by sum_c f_c . e_c with the force f_c that
@@ -190,11 +192,10 @@ namespace Viscoplastic
     /// step, by active cell; and the missing sides with the dual solution of
     /// creep. Collective.
     Vector<double>
-    products_of_creep(const State<dim> &state,
-                      const FlowRate   &rate,
-                      const Creep      &creep,
-                      const CoulombLaw *law,
-                      Vector<double>   &sides) const;
+    products_of_creep(const EvaluatedState<dim> &end,
+                      const Creep               &creep,
+                      const CoulombLaw          *law,
+                      Vector<double>            &sides) const;
 
     /// Carry the errors of time steps on to the end of a step, whose defects
     /// that of z has by now: they obey the equations linearized at its end,
@@ -245,13 +246,14 @@ namespace Viscoplastic
       IrreversibleStress strains;
     };
 
-    /// DualProblem::renew() of what is kept. Collective. Throws ExcMessage.
+    /// DualProblem::renew() of what is kept, for the end of a step. Collective.
+    /// Throws ExcMessage.
     void
-    renew(BulkSolver              &solver,
-          const DistributedMatrix &matrix,
-          const ContactState      &contact,
-          const CoulombLaw        *law,
-          KeptDual                &kept) const;
+    renew(BulkSolver                &solver,
+          const DistributedMatrix   &matrix,
+          const EvaluatedState<dim> &end,
+          const CoulombLaw          *law,
+          KeptDual                  &kept) const;
 
     const Discretization<dim> &discretization;
     const SpaceEstimator<dim> &space_estimator;

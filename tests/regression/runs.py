@@ -195,6 +195,41 @@ def boundaries(*roles):
     }
 
 
+def on_boundary(number, **values):
+    """Entries of one boundary; _ is a blank of their names."""
+    return {
+        f"Boundary {number}/{name.replace('_', ' ')}": value
+        for name, value in values.items()
+    }
+
+
+def with_roles(**boundaries):
+    """Entries of {role: numbers of boundaries}."""
+    return {
+        f"Boundary {number}/Role": role
+        for role, numbers in boundaries.items()
+        for number in numbers
+    }
+
+
+def of_law(name, **parameters):
+    """Entries of a law and its parameters; _ is a blank of their names."""
+    return {
+        "Material/Law": name,
+        **{
+            f"Material/{name}/{parameter.replace('_', ' ')}": value
+            for parameter, value in parameters.items()
+        },
+    }
+
+
+def elastic_moduli(youngs_modulus, poissons_ratio):
+    return {
+        "Material/Young's modulus": youngs_modulus,
+        "Material/Poisson's ratio": poissons_ratio,
+    }
+
+
 def entries(boundaries, values):
     """The same entries of several boundaries."""
     return {

@@ -10,6 +10,7 @@ every step, and displacements that differ by the motion.
 import numpy as np
 
 from harness import TestCase, as_prm, main, run
+from runs import of_law, on_boundary, with_roles
 
 SAME = (
     "stick_area",
@@ -142,8 +143,7 @@ class Relativity(TestCase):
             "Geometry/Arguments": "4, 4, 2 : 0, 0, 0 : 1, 1, 0.5 : true",
             "Geometry/Boundary ids": "if(z < 1e-6 && x < 0.5, 7, id)",
             "Geometry/Boundary refinements": "7: 1",
-            "Boundary 7/Role": "contact",
-            "Boundary 7/Friction law": "tresca",
+            **on_boundary(7, Role="contact", Friction_law="tresca"),
             "Boundary 7/Friction bound": "0.05*(1 + x)",
             "Boundary 7/Foundation motion":
                 "0.2*(1 - cos(pi*t)); 0.2*sin(pi*t); 0",
@@ -213,16 +213,10 @@ class Relativity(TestCase):
 # pieces meet in an edge, whose nodes slip over two foundations.
 WALL = {
     "Geometry/Arguments": "4, 4, 2 : 0, 0, 0 : 1, 1, 0.5 : true",
-    "Boundary 0/Role": "traction",
-    "Boundary 0/Traction": "0; 0.05*t; 0",
-    "Boundary 1/Role": "contact",
-    "Boundary 1/Friction law": "tresca",
-    "Boundary 1/Friction bound": 0.005,
-    "Boundary 4/Contact law": "unilateral",
-    "Boundary 4/Friction law": "coulomb",
-    "Boundary 4/Friction bound": "",
-    "Boundary 4/Friction coefficient": 0.3,
-    "Boundary 4/Foundation motion": "0; 0.2*t; 0",
+    **on_boundary(0, Role="traction", Traction="0; 0.05*t; 0"),
+    **on_boundary(1, Role="contact", Friction_law="tresca", Friction_bound=0.005),
+    **on_boundary(4, Contact_law="unilateral", Friction_law="coulomb", Friction_bound=""),
+    **on_boundary(4, Friction_coefficient=0.3, Foundation_motion="0; 0.2*t; 0"),
     "Boundary 4/Foundation displacement": "-0.01*t",
     "Time/Phases": "1: 4",
     "Output/Points": "1, 0, 0; 1, 0.5, 0",
@@ -256,17 +250,14 @@ class Neighbors(TestCase):
                 "Geometry/Boundary ids": "if(z < 1e-6 && x < 0.5, 7, id)",
                 "Geometry/Boundary refinements": "7: 1",
                 "Geometry/Arguments": WALL["Geometry/Arguments"],
-                "Boundary 7/Role": "contact",
-                "Boundary 7/Friction law": "tresca",
+                **on_boundary(7, Role="contact", Friction_law="tresca"),
                 "Boundary 7/Friction bound": "0.05*(1 + x)",
                 "Boundary 7/Foundation motion": "{0}; {1}; 0",
             },
             {
                 **WALL,
-                "Boundary 4/Contact law": "bilateral",
-                "Boundary 4/Friction law": "tresca",
-                "Boundary 4/Friction bound": 0.03,
-                "Boundary 4/Friction coefficient": "",
+                **on_boundary(4, Contact_law="bilateral", Friction_law="tresca"),
+                **on_boundary(4, Friction_bound=0.03, Friction_coefficient=""),
                 "Boundary 4/Foundation motion": "0; 0.2*sin(pi*t); 0",
                 "Boundary 1/Foundation motion": "0; {1}; 0",
             },
@@ -289,13 +280,11 @@ class Glued(TestCase):
     """No slip whatever the force."""
 
     GLUED = {
-        "Boundary 2/Friction law": "glued",
-        "Boundary 2/Foundation motion": "",
+        **on_boundary(2, Friction_law="glued", Foundation_motion=""),
         "Output/Points": "0, 0.5; 2, 0.5",
     }
     PUSH = {
-        "Boundary 0/Role": "traction",
-        "Boundary 0/Traction": "0.3*t; 0.1*t",
+        **on_boundary(0, Role="traction", Traction="0.3*t; 0.1*t"),
         "Time/Phases": "1: 8",
     }
 
@@ -329,8 +318,7 @@ class Glued(TestCase):
             {
                 **self.GLUED,
                 **self.PUSH,
-                "Boundary 2/Friction law": "tresca",
-                "Boundary 2/Friction bound": 1e6,
+                **on_boundary(2, Friction_law="tresca", Friction_bound=1e6),
             },
         )
         self.same(glued, tresca)
@@ -349,8 +337,7 @@ class Glued(TestCase):
             "conveyor_2d",
             {
                 **overrides,
-                "Boundary 2/Friction law": "glued",
-                "Boundary 2/Foundation displacement": "-0.1*t",
+                **on_boundary(2, Friction_law="glued", Foundation_displacement="-0.1*t"),
                 "Boundary 2/Foundation motion": f"{c:.17g}*0.2*t; {s:.17g}*0.2*t",
             },
         )
@@ -377,10 +364,8 @@ class Glued(TestCase):
         result = run(
             "conveyor_3d",
             {
-                "Boundary 4/Friction law": "glued",
-                "Boundary 4/Foundation motion": "",
-                "Boundary 5/Role": "traction",
-                "Boundary 5/Traction": "0.1*t; 0; -0.1*t",
+                **on_boundary(4, Friction_law="glued", Foundation_motion=""),
+                **on_boundary(5, Role="traction", Traction="0.1*t; 0; -0.1*t"),
             },
         )
         self.assertClose(result["reaction_4_x"], -0.1 * result["t"], absolute=1e-9)
@@ -416,10 +401,8 @@ class Passenger(TestCase):
         self.check(
             **{
                 "Geometry/Boundary ids": "if(y < 1e-6 && x > 0.5, 7, id)",
-                "Boundary 7/Role": "contact",
-                "Boundary 7/Friction law": "coulomb",
-                "Boundary 7/Friction coefficient": 0,
-                "Boundary 7/Normal stress": -0.01,
+                **on_boundary(7, Role="contact", Friction_law="coulomb"),
+                **on_boundary(7, Friction_coefficient=0, Normal_stress=-0.01),
             }
         )
 
@@ -449,8 +432,7 @@ class Passenger(TestCase):
             "passenger_2d",
             {
                 "Boundary 1/Role": "free",
-                "Boundary 2/Friction law": "tresca",
-                "Boundary 2/Friction bound": 0.1,
+                **on_boundary(2, Friction_law="tresca", Friction_bound=0.1),
             },
         )
         self.assertClose(result["max_von_mises"], 0, absolute=1e-12)
@@ -479,8 +461,7 @@ class Passenger(TestCase):
                 "Material/Law": "elastic",
                 "Initial state/Stress": "0; 0; 0; 0.05",
                 "Boundary 0/Traction": "0; -0.05",
-                "Boundary 1/Role": "traction",
-                "Boundary 1/Traction": "0; 0.05",
+                **on_boundary(1, Role="traction", Traction="0; 0.05"),
                 "Time/Phases": "1: 4",
             },
         )
@@ -552,10 +533,8 @@ class Held(TestCase):
     TEXT = as_prm(
         {
             "Boundary 0/Role": "clamped",
-            "Boundary 1/Role": "displacement",
-            "Boundary 1/Displacement": "0.01*t; FREE",
-            "Boundary 2/Role": "contact",
-            "Boundary 2/Friction law": "tresca",
+            **on_boundary(1, Role="displacement", Displacement="0.01*t; FREE"),
+            **on_boundary(2, Role="contact", Friction_law="tresca"),
             "Boundary 2/Friction bound": "1e-3",
             "Boundary 3/Role": "free",
             "Time/Phases": "1: 4",
@@ -567,8 +546,7 @@ class Held(TestCase):
     SPACE = {
         "Dimension": 3,
         "Geometry/Arguments": "1, 1, 1 : 0, 0, 0 : 1, 1, 1 : true",
-        "Boundary 4/Role": "free",
-        "Boundary 5/Role": "free",
+        **with_roles(free=[4, 5]),
     }
 
     def held(self, overrides, dim=2, **options):
@@ -590,8 +568,7 @@ class Held(TestCase):
                     2,
                     {
                         **self.HELD,
-                        "Material/Law": "parsed",
-                        "Material/parsed/Strain rate": "0.1*sigma_eq*exp(-p)",
+                        **of_law("parsed", Strain_rate="0.1*sigma_eq*exp(-p)"),
                         "Time/Scheme": "backward Euler",
                     },
                 ),
@@ -624,9 +601,7 @@ class Tension(TestCase):
     """Bilateral contact does not open; the user is told where it pulls."""
 
     SCENE = {
-        "Boundary 2/Friction law": "tresca",
-        "Boundary 2/Friction bound": 0.1,
-        "Boundary 2/Foundation motion": "",
+        **on_boundary(2, Friction_law="tresca", Friction_bound=0.1, Foundation_motion=""),
         "Time/Phases": "1: 4",
     }
 
@@ -674,10 +649,8 @@ class Tension(TestCase):
             "Geometry/Arguments": "0.6 : 0.4 : 1",
             "Geometry/Global refinements": 1,
             "Geometry/Boundary refinements": "0: 1",
-            "Boundary 0/Role": "free",
-            "Boundary 1/Role": "clamped",
-            "Boundary 2/Role": "contact",
-            "Boundary 2/Friction law": "none",
+            **with_roles(free=[0], clamped=[1]),
+            **on_boundary(2, Role="contact", Friction_law="none"),
             "Boundary 2/Foundation displacement": "0.0002*min(8*t, 1)",
             "Time/Phases": "0.5: 4",
             "Mesh refinement/Strategy": "residual",

@@ -9,7 +9,7 @@ or a wrong share of the bound at the corner shows at once.
 import numpy as np
 
 from harness import TestCase, main, run
-from runs import rotation
+from runs import on_boundary, rotation, with_roles
 
 
 class Corners(TestCase):
@@ -119,12 +119,9 @@ class Corners(TestCase):
         pressure = 2 * (0.3 / 1.3 / 0.4 + 1 / 2.6) * 0.01
         overrides = {
             "Geometry/Global refinements": 0,
-            "Boundary 2/Role": "symmetry",
-            "Boundary 2/Friction bound": 0,
-            "Boundary 2/Friction law": "none",
+            **on_boundary(2, Role="symmetry", Friction_bound=0, Friction_law="none"),
             "Boundary 2/Foundation displacement": 0,
-            "Boundary 0/Friction law": "none",
-            "Boundary 0/Friction bound": 0,
+            **on_boundary(0, Friction_law="none", Friction_bound=0),
             "Boundary 0/Foundation displacement": 0,
         }
         for side, (a, b) in self.FREE_SIDES.items():
@@ -330,17 +327,12 @@ class Corners(TestCase):
             "Dimension": 3,
             "Geometry/Generator": "subdivided_hyper_rectangle",
             "Geometry/Arguments": "2, 2, 2 : 0, 0, 0 : 1, 1, 1 : true",
-            "Boundary 0/Contact law": "unilateral",
-            "Boundary 0/Friction coefficient": 0.4,
-            "Boundary 1/Role": "traction",
-            "Boundary 1/Pressure": "0.01*min(t, 1)",
-            "Boundary 2/Contact law": "normal compliance",
-            "Boundary 2/Compliance": 20,
+            **on_boundary(0, Contact_law="unilateral", Friction_coefficient=0.4),
+            **on_boundary(1, Role="traction", Pressure="0.01*min(t, 1)"),
+            **on_boundary(2, Contact_law="normal compliance", Compliance=20),
             "Boundary 2/Friction coefficient": 0.7,
-            "Boundary 3/Role": "traction",
-            "Boundary 3/Pressure": "0.02*min(t, 1)",
-            "Boundary 4/Role": "free",
-            "Boundary 5/Role": "displacement",
+            **on_boundary(3, Role="traction", Pressure="0.02*min(t, 1)"),
+            **with_roles(free=[4], displacement=[5]),
             "Boundary 5/Displacement": "-0.01*min(t, 1); -0.015*min(t, 1);"
             "0.03*max(t - 1, 0)",
             "Time/Phases": "1: 2, 1.5: 2",
@@ -379,14 +371,10 @@ class Corners(TestCase):
         "Boundary 0/Displacement":
             "0.002925*10^(2*sin(y))*0.5*(1-cos(4*pi*t)); free; "
             "-0.03889*10^(2*sin(x))*(1-exp(-5*t))",
-        "Boundary 5/Role": "contact",
-        "Boundary 5/Contact law": "unilateral",
-        "Boundary 5/Friction law": "coulomb",
-        "Boundary 5/Friction coefficient": 0.5,
-        "Boundary 1/Role": "contact",
-        "Boundary 1/Contact law": "unilateral",
-        "Boundary 1/Friction law": "coulomb",
-        "Boundary 1/Friction coefficient": 1,
+        **on_boundary(5, Role="contact", Contact_law="unilateral"),
+        **on_boundary(5, Friction_law="coulomb", Friction_coefficient=0.5),
+        **on_boundary(1, Role="contact", Contact_law="unilateral"),
+        **on_boundary(1, Friction_law="coulomb", Friction_coefficient=1),
         "Boundary 1/Gap": "if(y < 0.5, 0, 0.001495)",
         "Boundary 1/Foundation motion": "0; -0.01342*sin(2*pi*t); 0",
         **{f"Boundary {id}/Role": "free" for id in (2, 3, 4)},

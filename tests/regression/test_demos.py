@@ -15,6 +15,7 @@ import tempfile
 import numpy as np
 
 from harness import COUPLED, SOURCE, TestCase, main, run, scene_file
+from runs import on_boundary
 
 
 class SaltPillar(TestCase):
@@ -818,10 +819,8 @@ class ShearedSlab(TestCase):
             "sheared_slab_2d",
             {
                 "Geometry/Arguments": "12, 4 : 0, 0 : 0.12, 0.02 : true",
-                "Boundary 0/Role": "displacement",
-                "Boundary 0/Displacement": "free; 0",
-                "Boundary 1/Role": "displacement",
-                "Boundary 1/Displacement": "free; 0",
+                **on_boundary(0, Role="displacement", Displacement="free; 0"),
+                **on_boundary(1, Role="displacement", Displacement="free; 0"),
                 "Boundary 2/Friction bound": "100e3",
                 "Output/Fields every": 0,
             },
@@ -887,8 +886,7 @@ class TreadBlock(TestCase):
             "tread_block_3d",
             {
                 "Geometry/Arguments": self.CELLS,
-                "Boundary 4/Friction law": "tresca",
-                "Boundary 4/Friction bound": "1e9",
+                **on_boundary(4, Friction_law="tresca", Friction_bound="1e9"),
                 "Boundary 4/Foundation motion": "5e-4*min(t/1e-6, 1); 0; 0",
                 "Time/Phases": f"1e-6: 1, {end}: {n}",
                 "Output/Fields every": 0,

@@ -4,7 +4,9 @@
 import numpy as np
 
 from harness import TestCase, main, run
-from runs import EVERY_STEP, Job, entries, manufactured, without_wall_times
+from runs import (
+    EVERY_STEP, Job, entries, manufactured, of_law, on_boundary, without_wall_times,
+)
 from shear_layer import MU, THETA, tau
 
 # of a plane scene on one mesh, with cell means
@@ -39,14 +41,10 @@ class SingularCreep(TestCase):
         "Geometry/Generator": "hyper_L",
         "Geometry/Arguments": "-1 : 1 : false",
         "Geometry/Boundary ids": "if(x == -1, 0, if(y == -1, 1, if(y == 1, 3, 2)))",
-        "Material/Law": "norton",
-        "Material/norton/Exponent": 3,
-        "Material/norton/Rate factor": 1e4,
-        "Material/norton/Stress cap": 1,
+        **of_law("norton", Exponent=3, Rate_factor=1e4, Stress_cap=1),
         **entries((0, 2), {"Role": "free"}),
         "Boundary 1/Role": "clamped",
-        "Boundary 3/Role": "traction",
-        "Boundary 3/Traction": "0.003; -0.003",
+        **on_boundary(3, Role="traction", Traction="0.003; -0.003"),
         "Initial state/Equilibrate": "true",
         "Time/Scheme": "backward Euler",
         "Time/Phases": "1: 4, 10: 4",
@@ -357,8 +355,7 @@ class Estimate(TestCase):
                 **SLAB,
                 "Material/Law": "elastic",
                 "Boundary 0/Traction": "0; 0",
-                "Boundary 2/Contact law": "unilateral",
-                "Boundary 2/Gap": "0.1",
+                **on_boundary(2, Contact_law="unilateral", Gap="0.1"),
                 "Boundary 2/Friction bound": "0.03*abs(sin(7*t))",
             },
         )

@@ -8,6 +8,7 @@ import tempfile
 from pathlib import Path
 
 from harness import MPIRUN, PROGRAM, TestCase, main, run, run_program, scene_file
+from runs import elastic_moduli, on_boundary, with_roles
 
 SMALL = {
     "Geometry/Arguments": "4, 2 : 0, 0 : 2, 1 : true",
@@ -256,9 +257,7 @@ class Refused(TestCase):
     def test_entries_that_the_role_does_not_use_are_named(self):
         """Variants of a scene keep what they do not need; the user is told."""
         leftovers = {
-            "Boundary 1/Role": "free",
-            "Boundary 1/Traction": "1; 1",
-            "Boundary 1/Friction law": "tresca",
+            **on_boundary(1, Role="free", Traction="1; 1", Friction_law="tresca"),
             "Boundary 2/Normal stress": -1,
             "Time/Phases": "0.1: 1",
         }
@@ -284,8 +283,7 @@ class Refused(TestCase):
             **{
                 "Geometry/Generator": "hyper_shell",
                 "Geometry/Arguments": "0, 0 : 0.5 : 1 : 12 : true",
-                "Boundary 0/Role": "contact",
-                "Boundary 0/Friction law": "tresca",
+                **on_boundary(0, Role="contact", Friction_law="tresca"),
                 "Boundary 0/Friction bound": 0.1,
                 "Boundary 1/Role": "clamped",
             },
@@ -315,11 +313,8 @@ class Refused(TestCase):
             "Geometry/Arguments": "8, 8 : 0, 0 : 1, 1 : true",
             "Geometry/Material ids": "if(y < 0.5, 1, 2)",
             "Material 1/Young's modulus": 1,
-            "Boundary 0/Role": "free",
-            "Boundary 1/Role": "free",
-            "Boundary 2/Role": "clamped",
-            "Boundary 3/Role": "traction",
-            "Boundary 3/Traction": "0; -0.05*t",
+            **with_roles(free=[0, 1], clamped=[2]),
+            **on_boundary(3, Role="traction", Traction="0; -0.05*t"),
             "Time/Phases": "1: 2",
         }
         softer = {**scene, "Material 2/Young's modulus": 1e8}
@@ -333,25 +328,18 @@ class Refused(TestCase):
         which a force along the lower one would have to press it against."""
         sections = {
             "Geometry/Arguments": "2, 2 : 0, 0 : 1, 0.5 : true",
-            "Material/Young's modulus": 1.338,
-            "Material/Poisson's ratio": 0.499,
+            **elastic_moduli(1.338, 0.499),
             "Material/Volumetric integration": "full",
-            "Boundary 0/Role": "free",
-            "Boundary 1/Role": "traction",
+            **with_roles(free=[0], traction=[1]),
             "Boundary 1/Pressure": "-0.02084*sqrt(1 + y*y)*0.5*(1 - cos(4*pi*t))",
-            "Boundary 2/Role": "contact",
-            "Boundary 2/Contact law": "unilateral",
-            "Boundary 2/Friction law": "coulomb",
-            "Boundary 2/Friction coefficient": 1,
+            **on_boundary(2, Role="contact", Contact_law="unilateral"),
+            **on_boundary(2, Friction_law="coulomb", Friction_coefficient=1),
             "Boundary 2/Foundation displacement": "0.002759*t",
             "Boundary 2/Foundation motion":
                 "0.006722*if(x > 0.5, 0.2, 1)*(1 - exp(-5*t)); -0.09702*abs(sin(7*t))",
-            "Boundary 3/Role": "contact",
-            "Boundary 3/Contact law": "normal compliance",
-            "Boundary 3/Compliance": 9.244,
-            "Boundary 3/Friction law": "tresca",
-            "Boundary 3/Friction bound": "0.00109*(y < 0.3)",
-            "Boundary 3/Gap": 52.68,
+            **on_boundary(3, Role="contact", Contact_law="normal compliance"),
+            **on_boundary(3, Compliance=9.244, Friction_law="tresca"),
+            **on_boundary(3, Friction_bound="0.00109*(y < 0.3)", Gap=52.68),
             "Error control/Error bar": "false",
             "Solver/Contact tolerance": 1e-3,
             "Time/Phases": "1: 12",
@@ -383,8 +371,7 @@ class Refused(TestCase):
             "rigid",
             **{
                 "Boundary 3/Role": "free",
-                "Boundary 2/Friction law": "coulomb",
-                "Boundary 2/Friction coefficient": 0.3,
+                **on_boundary(2, Friction_law="coulomb", Friction_coefficient=0.3),
                 "Boundary 2/Normal stress": "-t",
             },
         )
@@ -396,8 +383,7 @@ class Refused(TestCase):
             "rigid",
             **{
                 "Boundary 3/Role": "free",
-                "Boundary 1/Role": "displacement",
-                "Boundary 1/Displacement": "free; 0",
+                **on_boundary(1, Role="displacement", Displacement="free; 0"),
                 "Boundary 2/Role": "free",
             },
         )
@@ -408,10 +394,8 @@ class Refused(TestCase):
             "Geometry/Arguments": "4, 2 : 0, 0 : 1, 1e-6 : true",
             "Material/Poisson's ratio": 0,
             "Boundary 0/Role": "clamped",
-            "Boundary 1/Role": "traction",
-            "Boundary 1/Traction": "0.01*t; 0",
-            "Boundary 2/Role": "free",
-            "Boundary 3/Role": "free",
+            **on_boundary(1, Role="traction", Traction="0.01*t; 0"),
+            **with_roles(free=[2, 3]),
             "Time/Phases": "1: 1",
         }
         result = run("sheet", sheet, text="")
@@ -445,8 +429,7 @@ class Refused(TestCase):
                 **SMALL,
                 "Initial state/Stress": "0; 0; 0; 0.05",
                 "Boundary 0/Traction": "0; -0.05",
-                "Boundary 1/Role": "traction",
-                "Boundary 1/Traction": "0; 0.05",
+                **on_boundary(1, Role="traction", Traction="0; 0.05"),
                 "Time/Phases": "0.1: 1",
             },
         )
@@ -458,8 +441,7 @@ class Refused(TestCase):
             **{
                 "Initial state/Stress": "0; 0; 0; 0.09",
                 "Boundary 0/Traction": "0; -0.09",
-                "Boundary 1/Role": "traction",
-                "Boundary 1/Traction": "0; 0.09",
+                **on_boundary(1, Role="traction", Traction="0; 0.09"),
             },
         )
 
@@ -533,8 +515,7 @@ class Refused(TestCase):
             r"translation along \(0\.866, 0\.5\)",
             **{
                 "Geometry/Rotation angle": 30,
-                "Boundary 0/Role": "free",
-                "Boundary 3/Role": "symmetry",
+                **with_roles(free=[0], symmetry=[3]),
             },
         )
 

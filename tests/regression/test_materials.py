@@ -9,6 +9,7 @@ import re
 import numpy as np
 
 from harness import TestCase, main, run
+from runs import of_law
 from laws import (
     E,
     E_INVERSE,
@@ -200,10 +201,7 @@ class UniformStrain(TestCase):
         uncapped = run(
             "uniform_strain",
             {
-                "Material/Law": "norton",
-                "Material/norton/Rate factor": 1,
-                "Material/norton/Exponent": 3,
-                "Material/norton/Stress cap": 10,
+                **of_law("norton", Rate_factor=1, Exponent=3, Stress_cap=10),
             },
         )
         self.assertClose(uncapped["capped_volume"], 0)
@@ -576,8 +574,7 @@ class Anisotropy(TestCase):
             {
                 **self.NO_MODULI,
                 "Material/Voigt matrix": self.text(self.MATRIX),
-                "Material/Law": "maxwell",
-                "Material/maxwell/Viscosity": 2,
+                **of_law("maxwell", Viscosity=2),
             },
         )
 

@@ -12,6 +12,7 @@ import tempfile
 from pathlib import Path
 
 from harness import PROGRAM, SOURCE, TestCase, as_prm, main, run, scene_file
+from runs import on_boundary, with_roles
 
 MESHES = SOURCE / "prm" / "verification" / "meshes"
 FORMATS = "_2.msh", "_4.msh", ".ucd", ".vtk", ".inp"
@@ -86,15 +87,11 @@ class Same(TestCase):
         text = as_prm(
             {
                 "Dimension": "3",
-                "Boundary 0/Role": "free",
-                "Boundary 1/Role": "free",
-                "Boundary 2/Role": "contact",
-                "Boundary 2/Friction law": "tresca",
+                **with_roles(free=[0, 1]),
+                **on_boundary(2, Role="contact", Friction_law="tresca"),
                 "Boundary 2/Friction bound": "0.02",
-                "Boundary 3/Role": "displacement",
-                "Boundary 3/Displacement": "0.1*t; -0.01*t; 0",
-                "Boundary 4/Role": "free",
-                "Boundary 5/Role": "free",
+                **on_boundary(3, Role="displacement", Displacement="0.1*t; -0.01*t; 0"),
+                **with_roles(free=[4, 5]),
             }
         )
         short = {

@@ -19,7 +19,7 @@ import tempfile
 import numpy as np
 
 from harness import DEFECTS, EFFORT, TestCase, main, run
-from runs import entries
+from runs import elastic_moduli, entries, of_law, on_boundary
 
 # rubbing_2d.prm in space: a block of 4 x 4 x 3 cells that turns as it slides
 IN_SPACE = {
@@ -124,8 +124,7 @@ class Closed(Contact):
         dim, _, below, _ = place
         normal = "xyz"[dim - 1]
         body = {
-            "Material/Law": "maxwell",
-            "Material/maxwell/Viscosity": 0.5,
+            **of_law("maxwell", Viscosity=0.5),
             "Time/Phases": "1: 8, 1.5: 8",
         }
         tresca = {"Friction law": "tresca", "Friction bound": 0.05, **foundation}
@@ -188,17 +187,12 @@ class Greco(Contact):
         "Dimension": 2,
         "Geometry/Generator": "subdivided_hyper_rectangle",
         "Geometry/Arguments": "64, 64 : 0, 0 : 0.04, 0.04 : true",
-        "Material/Young's modulus": 1.3e11,
-        "Material/Poisson's ratio": 0.2,
-        "Boundary 0/Role": "traction",
-        "Boundary 0/Pressure": "15e7*min(t, 1)",
+        **elastic_moduli(1.3e11, 0.2),
+        **on_boundary(0, Role="traction", Pressure="15e7*min(t, 1)"),
         "Boundary 1/Role": "symmetry",
-        "Boundary 2/Role": "contact",
-        "Boundary 2/Contact law": "unilateral",
-        "Boundary 2/Friction law": "coulomb",
-        "Boundary 2/Friction coefficient": 1,
-        "Boundary 3/Role": "traction",
-        "Boundary 3/Pressure": "5e7*min(t, 1)",
+        **on_boundary(2, Role="contact", Contact_law="unilateral"),
+        **on_boundary(2, Friction_law="coulomb", Friction_coefficient=1),
+        **on_boundary(3, Role="traction", Pressure="5e7*min(t, 1)"),
         "Output/Points": "0, 0; 0.00125, 0; 0.005, 0; 0.0075, 0; 0.01125, 0",
         "Solver/Coulomb pressure": "Newton",
     }
@@ -255,8 +249,7 @@ class Greco(Contact):
             given = {
                 "Table 1/File": table.name,
                 "Table 1/Outside": "constant",
-                "Boundary 2/Friction law": "tresca",
-                "Boundary 2/Friction bound": "bound(x)*t",
+                **on_boundary(2, Friction_law="tresca", Friction_bound="bound(x)*t"),
             }
             tresca = run("greco", {**multigrid, **given}, text="")
         self.assertClose(tresca["point0_x"][-1], law["point0_x"][-1], relative=1e-3)
@@ -449,8 +442,7 @@ class HardCases(Contact):
         push = "0.05*if(t < 0.5, 0, if(t < 1, t - 0.5, 1.5 - t))"
         turn = "0.02*(1 - cos(2*pi*max(0, t - 0.5))); 0.02*sin(2*pi*max(0, t - 0.5))"
         flow = {
-            "Material/Law": "perzyna",
-            "Material/perzyna/Yield radius": 0.003,
+            **of_law("perzyna", Yield_radius=0.003),
             "Time/Scheme": "backward Euler",
         }
         for place, along, down, refinements, mu, body in (

@@ -10,7 +10,7 @@ import numpy as np
 
 import test_fields
 from harness import TestCase, main, run
-from runs import Job, without_wall_times
+from runs import Job, on_boundary, with_roles, without_wall_times
 
 BODY_FIELDS = (
     "velocity, stress, von Mises stress, irreversible stress, total strain, "
@@ -435,11 +435,8 @@ class Curved(TestCase):
                 # On the chord of the inner arc from 0 to 45 degrees.
                 "Output/Points": "0.854, 0.353",
                 "Output/Point fields": "stress",
-                "Boundary 0/Role": "traction",
-                "Boundary 0/Pressure": "t",
-                "Boundary 1/Role": "free",
-                "Boundary 2/Role": "symmetry",
-                "Boundary 3/Role": "symmetry",
+                **on_boundary(0, Role="traction", Pressure="t"),
+                **with_roles(free=[1], symmetry=[2, 3]),
                 "Time/Phases": "1: 4",
                 "Mesh refinement/Strategy": "residual",
                 "Mesh refinement/Refinement fraction": 0.9,

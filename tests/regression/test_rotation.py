@@ -10,7 +10,7 @@ some 1e-8 of their maximum.
 import numpy as np
 
 from harness import DEFECTS, EFFORT, TestCase, main, run
-from runs import rotation
+from runs import on_boundary, rotation
 
 AGREE = 1e-7
 
@@ -214,8 +214,7 @@ def friction_scene(
         "Boundary 0/Traction": f"{0.3 * force}*{ramp}; {0.1 * force}*{ramp}^2"
         + "; 0" * (dimension - 2),
         f"Boundary {top}/Role": "clamped",
-        f"Boundary {foot}/Role": "contact",
-        f"Boundary {foot}/Friction law": "tresca",
+        **on_boundary(foot, Role="contact", Friction_law="tresca"),
         f"Boundary {foot}/Friction bound": 0.08 * force,
         "Time/Phases": f"{time}: 4",
         "Solver/Contact tolerance": 1e-10,
@@ -278,8 +277,7 @@ class Units(TestCase):
         """Where nothing but the preconditioner says how large an error is."""
         more = {
             "Solver/Linear solver": "multigrid",
-            "Boundary 2/Friction law": "none",
-            "Boundary 2/Friction bound": "",
+            **on_boundary(2, Friction_law="none", Friction_bound=""),
         }
         known = self.block(2, more)
         for stress in 1e-60, 1e-30, 1e60:

@@ -394,7 +394,7 @@ class Ladders(TestCase):
             Study__Levels=8,
             Study__Ladders="both",
             **NOTHING_TIMED,
-            Study__Budget=12,
+            Study__Budget=5,
         ) as folder:
             process = folder.run("study", code=0)
             found = re.search(
@@ -537,7 +537,7 @@ class Refused(TestCase):
             Geometry__Global_refinements=0,
             Study__Levels=9,
             Study__Ladders="both",
-            Study__Budget=5,
+            Study__Budget=2,
         ) as folder:
             process = folder.run("study", code=0)
             self.assertRegex(process.stdout, r"uniform_h8_k8: left out, it would take")

@@ -4,6 +4,7 @@
 import numpy as np
 
 from harness import TestCase, main, run
+from runs import of_law, on_boundary
 
 SOLVERS = ("direct", "multigrid", "algebraic multigrid")
 E, NU = 1.0, 0.3
@@ -84,11 +85,9 @@ class BlockOnSprings(TestCase):
         relaxes."""
         eta, rate, k_n = 0.5, 0.1, 0.5
         base = {
-            "Material/Law": "maxwell",
-            "Material/maxwell/Viscosity": eta,
+            **of_law("maxwell", Viscosity=eta),
             "Boundary 3/Role": "displacement",
-            "Boundary 3/Displacement": f"free; -{rate}*min(t, 0.5)",
-            "Boundary 3/Pressure": "",
+            **on_boundary(3, Displacement=f"free; -{rate}*min(t, 0.5)", Pressure=""),
             "Time/Phases": "0.5: 10, 2: 15",
         }
         for scheme in "forward Euler", "backward Euler", "Heun":
@@ -320,8 +319,7 @@ class Strip(TestCase):
         stiff = strip(2, {"Boundary 2/Normal stiffness": "if(x > 1, 1e8, 0)"})
         plane = {
             "Geometry/Boundary ids": "if(id == 2 && x > 1, 4, id)",
-            "Boundary 2/Normal stiffness": "",
-            "Boundary 2/Role": "free",
+            **on_boundary(2, Normal_stiffness="", Role="free"),
             "Boundary 4/Role": "symmetry",
         }
         self.assertClose(
@@ -429,8 +427,7 @@ class FreeBlock(TestCase):
         result = run(
             "supports_block_3d",
             {
-                "Material/Law": "maxwell",
-                "Material/maxwell/Viscosity": 1,
+                **of_law("maxwell", Viscosity=1),
                 "Mesh refinement/Strategy": "kelly",
                 "Mesh refinement/Every n steps": 1,
                 "Time/Phases": "1: 4",

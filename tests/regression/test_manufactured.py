@@ -269,8 +269,8 @@ class Meshes(Ladders):
 class Ranks(Ladders):
     def test_ranks(self):
         for scene, level in (("tresca_2d", 2), ("coulomb_3d", 1)):
-            alone = errors(scene, "norton", level, 10)
-            together = errors(scene, "norton", level, 10, ranks=3)
+            alone = errors(scene, "norton", level, 20)
+            together = errors(scene, "norton", level, 20, ranks=3)
             for norm in NORMS:
                 # The tolerance of the scene is 1e-10.
                 self.assertClose(together[norm], alone[norm], 1e-7, what=norm)

@@ -27,7 +27,7 @@ import numpy as np
 from harness import DEFECTS, EFFORT, EXECUTABLE, PROGRAM, TestCase, main
 from runs import EVERY_STEP, Job, on_boundary, without_wall_times
 
-N_KILLS = int(os.environ.get("RESTART_KILLS", 6))
+N_KILLS = int(os.environ.get("RESTART_KILLS", 4))
 N_MUTATIONS = int(os.environ.get("RESTART_MUTATIONS", 12))
 
 SLAB = {
@@ -335,17 +335,17 @@ class OtherRanks(RestartCase):
                         )
 
     def test_slab(self):
-        self.compare("slab", SLAB, 6, (1, 2, 3))
+        self.compare("slab", SLAB, 6, (1, 3))
 
     def test_adaptive_slab(self):
-        self.compare("slab_adaptive", {"Time/Phases": "1: 8, 2: 8"}, 7, (2, 1, 3))
+        self.compare("slab_adaptive", {"Time/Phases": "1: 6, 2: 6"}, 5, (2, 3))
 
     def test_adaptive_pad(self):
-        overrides = {"Time/Phases": "1.5: 8", "Mesh refinement/Cell budget": 500}
-        self.compare("pad_adaptive", overrides, 4, (1, 2, 3))
+        overrides = {"Time/Phases": "1.5: 6", "Mesh refinement/Cell budget": 400}
+        self.compare("pad_adaptive", overrides, 3, (2, 1))
 
     def test_history_at_quadrature_points(self):
-        self.compare("cantilever_creep", {"Time/Phases": "2.6: 10"}, 5, (3, 1, 2))
+        self.compare("cantilever_creep", {"Time/Phases": "2.6: 10"}, 5, (3, 2))
 
 
 class JobOnDisk(Job):
@@ -919,32 +919,20 @@ class Changes(OfSlab):
             result = job.run("--restart")
             self.assertRegex(result.stdout, "changed.*Fields every.*Contact tolerance")
 
-    def test_geometry(self):
-        self.refused("Geometry/Global refinements", 1)
-
-    def test_role(self):
-        self.refused("Boundary 1/Role", "clamped")
-
-    def test_law(self):
-        self.refused("Material/Law", "elastic")
-
-    def test_history(self):
-        self.refused("Material/Stress history", "quadrature points")
-
-    def test_strategy(self):
-        self.refused("Mesh refinement/Strategy", "none")
-
-    def test_another_boundary(self):
+    def test_what_may_not_change(self):
+        for path, value in (
+            ("Geometry/Global refinements", 1),
+            ("Boundary 1/Role", "clamped"),
+            ("Material/Law", "elastic"),
+            ("Material/Stress history", "quadrature points"),
+            ("Mesh refinement/Strategy", "none"),
+            ("Output/Points", "0, 0; 2, 0"),
+        ):
+            with self.subTest(path):
+                self.refused(path, value)
         self.refused("Boundary 7/Role", "free", "Boundary 7")
-
-    def test_points(self):
-        self.refused("Output/Points", "0, 0; 2, 0")
-
-    def test_past_steps(self):
-        self.refused("Time/Phases", "1: 10, 2: 8", "Time/Phases")
-
-    def test_fewer_steps(self):
-        self.refused("Time/Phases", "1: 8", "Time/Phases")
+        for phases in "1: 10, 2: 8", "1: 8":  # past steps, fewer steps
+            self.refused("Time/Phases", phases, "Time/Phases")
 
 
 class Begin(RestartCase):

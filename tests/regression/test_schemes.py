@@ -620,11 +620,15 @@ class Restart(TestCase):
             "Geometry/Arguments": "16, 8 : 0, 0 : 2, 1 : true",
             "Time/Phases": "1: 4, 2: 3",
         }
-        for scheme in BACKWARD, HEUN:
-            for entries in {}, NORTON if scheme is BACKWARD else {}:
-                for ranks in 1, 2:
-                    with self.subTest(f"{scheme} {entries} {ranks}"):
-                        self.check("slab", {**steps, **entries, **scheme}, ranks)
+        for scheme, entries, ranks in (
+            (BACKWARD, {}, 1),
+            (BACKWARD, NORTON, 1),
+            (BACKWARD, NORTON, 2),
+            (HEUN, {}, 1),
+            (HEUN, {}, 2),
+        ):
+            with self.subTest(f"{scheme} {entries} {ranks}"):
+                self.check("slab", {**steps, **entries, **scheme}, ranks)
 
     def test_adaptive(self):
         self.check(

@@ -426,7 +426,7 @@ class Killed(RestartCase):
                     wanted = chance.randrange(2, 14)
                     part = job.checkpoints / f"step_{wanted:06}.unfinished"
                     while process.poll() is None and not part.exists():
-                        pass
+                        time.sleep(2e-4)
                     time.sleep(chance.uniform(0, 0.002))
                     process.send_signal(signal.SIGKILL)
                     process.communicate()

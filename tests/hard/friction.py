@@ -106,10 +106,7 @@ def bounds_of_every_size(size, report):
     corrections(report, *runs.values())
 
 
-@case(
-    GROUP,
-    "patches of bound 0 and 1e12 are patches without friction and glued ones",
-)
+@case(GROUP, "patches of bound 0 and 1e12 are patches without friction and glued ones")
 def bound_discontinuous(size, report):
     n = size(16, 64)
     mesh = {

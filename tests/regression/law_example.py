@@ -36,8 +36,7 @@ def build(directory, *options):
     build = directory / "build"
     environment = {**os.environ, "CCACHE_BASEDIR": str(directory.parent)}
     for command in (
-        ["cmake", "-S", directory, "-B", build, *options],
-        ["cmake", "--build", build],
+        ["cmake", "-S", directory, "-B", build, *options], ["cmake", "--build", build]
     ):
         process = subprocess.run(
             list(map(str, command)),

@@ -22,9 +22,7 @@ import plotting.command  # what a forked process finds loaded
 def plot_afresh(*arguments):
     """In a Python of its own, which has to find everything."""
     return subprocess.run(
-        [sys.executable, PLOT, *map(str, arguments)],
-        capture_output=True,
-        text=True,
+        [sys.executable, PLOT, *map(str, arguments)], capture_output=True, text=True
     )
 
 
@@ -35,6 +33,5 @@ def plot(*arguments):
 
 def run_script(script, *arguments):
     return forked(
-        [script, *arguments],
-        lambda: runpy.run_path(str(script), run_name="__main__"),
+        [script, *arguments], lambda: runpy.run_path(str(script), run_name="__main__")
     )

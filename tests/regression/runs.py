@@ -179,8 +179,7 @@ def manufactured(name, law=None, **overrides):
     text = (folder / f"{name}.prm").read_text()
     if law is not None:
         text = text.replace(
-            text[text.index("  set Law ") : text.index("end\n\n# the sides")],
-            "",
+            text[text.index("  set Law ") : text.index("end\n\n# the sides")], ""
         )
         text += (folder / f"law_{law}.prm").read_text()
     return run(name, {"Output/Fields every": 0, **overrides}, text=text)

@@ -167,9 +167,7 @@ class Combinations(TestCase):
         "corner_coulomb_90_2d": {  # two friction points at a node
             "Boundary 0/Friction coefficient": "0.3 + 0.2*y",
         },
-        "corner_tresca_150_2d": {
-            "Boundary 0/Friction bound": "0.01*t",
-        },
+        "corner_tresca_150_2d": {"Boundary 0/Friction bound": "0.01*t"},
         "corner_tresca_90_3d": {  # hanging nodes next to an edge
             "Boundary 0/Friction bound": "0.01*t",
         },
@@ -177,9 +175,7 @@ class Combinations(TestCase):
             "Boundary 2/Friction bound": "0.1 + 0.05*x",
             "Mesh refinement/Every n steps": 5,
         },
-        "elastic_frictionless": {
-            "Boundary 1/Traction": "0.1*t*y; 0",
-        },
+        "elastic_frictionless": {"Boundary 1/Traction": "0.1*t*y; 0"},
     }
 
     def test_identities(self):
@@ -373,9 +369,7 @@ class Reports(TestCase):
             3: "t*(0.1*x + 0.04*y); t*(0.02*x - 0.07*y); 0.03*t*(x - z)",
         }
         for dim, solver, ranks in (
-            (2, "direct", 1),
-            (2, "multigrid", 2),
-            (3, "multigrid", 3),
+            (2, "direct", 1), (2, "multigrid", 2), (3, "multigrid", 3)
         ):
             with self.subTest(dim=dim, solver=solver):
                 result = run(

@@ -455,9 +455,7 @@ class Contact(TestCase):
         self.assertLess(errors[-1][0], 0.003)
 
         # twice as deep as the punch
-        cone = indent(
-            3, "x < 2", Gap="0.04/pi*x", Foundation_displacement="-0.02*t"
-        )
+        cone = indent(3, "x < 2", Gap="0.04/pi*x", Foundation_displacement="-0.02*t")
         # measured: 0.003; the radius to a cell
         self.assertClose(-cone["contact_force_y"][-1], 0.02 * modulus, relative=0.004)
         self.assertClose(np.sqrt(cone["contact_area"][-1] / np.pi), 1, absolute=0.125)

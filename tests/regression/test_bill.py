@@ -68,10 +68,7 @@ class NeverActed(TestCase):
     def test_yield_and_hardening(self):
         self.check(
             "slab",
-            {
-                **SMALL,
-                **of_law("perzyna", Yield_radius=10, Hardening_modulus=1),
-            },
+            {**SMALL, **of_law("perzyna", Yield_radius=10, Hardening_modulus=1)},
             (
                 "viscoplastic flow has never acted",
                 "'Material/perzyna/Yield radius', so that no hardening",
@@ -126,10 +123,7 @@ class NeverActed(TestCase):
         )
         self.check(
             "slab",
-            {
-                **SMALL,
-                **on_boundary(2, Friction_bound=10, Contact_law="unilateral"),
-            },
+            {**SMALL, **on_boundary(2, Friction_bound=10, Contact_law="unilateral")},
             ("friction has never acted: nothing has slipped",),
             ("glued",),
         )

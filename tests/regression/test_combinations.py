@@ -34,10 +34,7 @@ SCENES = {
     },
 }
 LAWS = {}, NORTON, PERZYNA, HARDENING, pressure(3, 0.25)
-CONTROL = {
-    "Step control/Event tolerance": 0.02,
-    "Step control/Landing times": "0.37",
-}
+CONTROL = {"Step control/Event tolerance": 0.02, "Step control/Landing times": "0.37"}
 
 
 def draw(choose):

@@ -128,9 +128,7 @@ class ByHand(TestCase):
         makes of the way is no force."""
         weight, exponent = 0.002135 * 0.189 + 0.0004237, 1.5
         for compliance, solver, ranks in (
-            (2.065e-4, "direct", 1),
-            (2.065e-4, "multigrid", 2),
-            (2e-10, "direct", 1),
+            (2.065e-4, "direct", 1), (2.065e-4, "multigrid", 2), (2e-10, "direct", 1)
         ):
             scene = {
                 "Dimension": 2,
@@ -217,9 +215,7 @@ class Limit(TestCase):
             "Time/Phases": "1: 8",
             **ADAPTIVE,
         }
-        soft = {
-            **on_boundary(2, Contact_law="normal compliance", Compliance=1e7),
-        }
+        soft = {**on_boundary(2, Contact_law="normal compliance", Compliance=1e7)}
         rigid = run("plate", plate, text="")
         result = run("plate", {**plate, **soft}, text="")
         self.assertGreater(result["cells"][-1], 2 * result["cells"][0])

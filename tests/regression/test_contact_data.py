@@ -81,9 +81,7 @@ class Relativity(TestCase):
 
     def test_conveyor(self):
         """Coulomb, the belt comes back: the hysteresis of both directions."""
-        moving = self.check(
-            "conveyor_2d", 3, self.TWO, self.two, {"contact": 2}
-        )
+        moving = self.check("conveyor_2d", 3, self.TWO, self.two, {"contact": 2})
         force = moving["friction_force_x"]
         # The belt drags the body to the right: lambda, the force on the belt,
         # points left first, and right when it returns.
@@ -117,9 +115,7 @@ class Relativity(TestCase):
         three = run("conveyor_2d", ranks=3)
         for name in SAME[2:] + ("friction_force_x", "point0_x"):
             scale = np.abs(one[name]).max()
-            self.assertClose(
-                three[name], one[name], absolute=1e-6 * scale, what=name
-            )
+            self.assertClose(three[name], one[name], absolute=1e-6 * scale, what=name)
 
     def test_plate_on_a_circle(self):
         moving = self.check(
@@ -133,9 +129,7 @@ class Relativity(TestCase):
         # turning: less than 60 degrees
         force = moving.vector("friction_force")[-1, :2]
         velocity = np.array([np.sin(1.5 * np.pi), np.cos(1.5 * np.pi)])
-        self.assertLess(
-            force @ velocity, -0.5 * np.linalg.norm(force)
-        )
+        self.assertLess(force @ velocity, -0.5 * np.linalg.norm(force))
 
     def test_plate_under_hanging_nodes(self):
         """Cells refined at the face: it has hanging nodes, on 1 and 3 ranks."""
@@ -298,8 +292,7 @@ class Glued(TestCase):
     def test_at_rest_it_is_clamped(self):
         glued = run("conveyor_2d", {**self.GLUED, **self.PUSH})
         clamped = run(
-            "conveyor_2d",
-            {**self.GLUED, **self.PUSH, "Boundary 2/Role": "clamped"},
+            "conveyor_2d", {**self.GLUED, **self.PUSH, "Boundary 2/Role": "clamped"}
         )
         self.same(glued, clamped)
         # its force is a reaction, and nothing of friction is there
@@ -328,10 +321,7 @@ class Glued(TestCase):
 
     def test_it_goes_with_the_foundation(self):
         """In both directions, oblique, as if the displacement were given."""
-        overrides = {
-            "Geometry/Rotation angle": 30,
-            "Output/Points": "0, 0; 1, 1",
-        }
+        overrides = {"Geometry/Rotation angle": 30, "Output/Points": "0, 0; 1, 1"}
         c, s = np.cos(np.pi / 6), np.sin(np.pi / 6)
         glued = run(
             "conveyor_2d",
@@ -355,9 +345,7 @@ class Glued(TestCase):
         for name in ("stored_energy", "max_von_mises", "external_work",
                      "reaction_2_x", "reaction_2_y", "point1_x"):
             scale = np.abs(given[name]).max()
-            self.assertClose(
-                glued[name], given[name], absolute=1e-8 * scale, what=name
-            )
+            self.assertClose(glued[name], given[name], absolute=1e-8 * scale, what=name)
 
     def test_it_holds_a_body(self):
         """No other condition is needed, unlike with friction."""
@@ -389,9 +377,7 @@ class Passenger(TestCase):
 
     def test_wall_without_friction_does_not_hold_the_corner(self):
         for arguments in ("8, 8", "16, 16"):
-            self.check(
-                **{"Geometry/Arguments": f"{arguments} : 0, 0 : 1, 1 : true"}
-            )
+            self.check(**{"Geometry/Arguments": f"{arguments} : 0, 0 : 1, 1 : true"})
 
     def test_wall_without_friction_on_two_ranks(self):
         self.check(ranks=2)
@@ -673,16 +659,11 @@ class Pressures(TestCase):
     """S may change its sign: the bound is mu |S|, the load S itself."""
 
     def test_sign_of_the_normal_stress(self):
-        scene = {
-            "Boundary 2/Normal stress": "-0.2*sin(pi*t)",
-            "Time/Phases": "2: 16",
-        }
+        scene = {"Boundary 2/Normal stress": "-0.2*sin(pi*t)", "Time/Phases": "2: 16"}
         result = run("conveyor_2d", scene)
         self.check_identities(result)
         t = result["t"]
-        self.assertClose(
-            result["load_y"], 2 * 0.2 * np.sin(np.pi * t), absolute=1e-12
-        )
+        self.assertClose(result["load_y"], 2 * 0.2 * np.sin(np.pi * t), absolute=1e-12)
         bound = 2 * 0.3 * 0.2 * abs(np.sin(np.pi * t))
         self.assertTrue(np.all(abs(result["friction_force_x"]) <= bound + 1e-12))
         # at t = 1 and 2 the bound vanishes, and with it the force

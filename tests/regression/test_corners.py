@@ -26,9 +26,7 @@ class Corners(TestCase):
 
     def test_90_degrees_coulomb(self):
         result = run("corner_coulomb_90_2d")
-        self.check_displacement(
-            result, (0.2, 0.4), ((-0.013, 0.039), (0.039, -0.143))
-        )
+        self.check_displacement(result, (0.2, 0.4), ((-0.013, 0.039), (0.039, -0.143)))
         t = result["t"]
         # lower side of length 2: 0.03 t along x; left side: 0.03 t along y
         self.assertClose(result.vector("friction_force").T, 0.06 * t, absolute=1e-9)
@@ -57,9 +55,7 @@ class Corners(TestCase):
             "corner_tresca_150_2d", {"Geometry/Global refinements": refinements}
         )
         root3 = np.sqrt(3)
-        self.check_displacement(
-            result, (0.1, 0.05), ((0.02, 0.05 * root3), (0, -0.03))
-        )
+        self.check_displacement(result, (0.1, 0.05), ((0.02, 0.05 * root3), (0, -0.03)))
         t = result["t"]
         self.assertClose(
             result.vector("point0"), np.outer(t, (0.1, 0.05)), absolute=1e-9
@@ -107,10 +103,7 @@ class Corners(TestCase):
 
     # The corners of corner_tresca_150_2d that the free sides join: the lower
     # one 1-2, and the upper one 2-3.
-    FREE_SIDES = {
-        1: ((1, 0), (0.25, 1.25)),
-        3: ((0.25, 1.25), (-np.sqrt(3) / 2, 0.5)),
-    }
+    FREE_SIDES = {1: ((1, 0), (0.25, 1.25)), 3: ((0.25, 1.25), (-np.sqrt(3) / 2, 0.5))}
 
     def test_each_side_has_the_reaction_of_its_own_direction(self):
         """Uniform dilatation as above, one side a symmetry plane. Both press

@@ -19,9 +19,7 @@ def gives_way(dim):
         if dim == 2:
             shape = (1 + nu) * ((1 - 2 * nu) * b**2 + of**2) / abs(b**2 - of**2)
         else:
-            shape = ((1 - 2 * nu) * b**3 + (1 + nu) / 2 * of**3) / abs(
-                b**3 - of**3
-            )
+            shape = ((1 - 2 * nu) * b**3 + (1 + nu) / 2 * of**3) / abs(b**3 - of**3)
         result.append(b / E * shape)
     return sum(result)
 
@@ -61,9 +59,7 @@ class ShrinkFit(TestCase):
         """Lamé's pressure, with second order; the same on ranks."""
         errors = []
         for level, ranks, solver in (
-            (1, 2, "algebraic multigrid"),
-            (2, 3, "multigrid"),
-            (3, 1, "direct"),
+            (1, 2, "algebraic multigrid"), (2, 3, "multigrid"), (3, 1, "direct")
         ):
             changes = {
                 "Geometry/Global refinements": level,
@@ -275,8 +271,7 @@ class ShrinkFit(TestCase):
         }
         # A quarter of the circle, or half of the sphere.
         for model, ranks, whole in (
-            ("strain", (1, 3), np.pi),
-            ("axisymmetric", (1, 3), 8 * np.pi),
+            ("strain", (1, 3), np.pi), ("axisymmetric", (1, 3), 8 * np.pi)
         ):
             with self.subTest(model):
                 changes = {**adaptive, "Geometry/Plane model": model}

@@ -330,8 +330,7 @@ class Estimate(TestCase):
             ("3/Displacement", "0.1*({} + t); 0", "0.1*t; 0", held),
         ):
             for value, least, most in (
-                (swinging.format("sin(16*pi*t)"), 0.1, 2),
-                (rising, 0, 0),
+                (swinging.format("sin(16*pi*t)"), 0.1, 2), (rising, 0, 0)
             ):
                 result = run(
                     "slab",
@@ -712,8 +711,7 @@ class Restart(TestCase):
                     again.forget_after(n)
                     result = again.run("--restart", ranks=ranks)
                     self.assertEqual(
-                        without_wall_times(result.directory / "statistics.csv"),
-                        rows,
+                        without_wall_times(result.directory / "statistics.csv"), rows
                     )
                     self.assertEqual(without_clocks(result.info), record)
 
@@ -733,9 +731,7 @@ class Restart(TestCase):
             job.run()
             job.forget_after(5)
             refusal = job.run(
-                "--restart",
-                code=1,
-                overrides={"Error control__Error bar": "false"},
+                "--restart", code=1, overrides={"Error control__Error bar": "false"}
             )
             self.assertIn("'Error control/Error bar'", refusal.stderr)
 

@@ -10,10 +10,7 @@ from pathlib import Path
 from harness import MPIRUN, PROGRAM, TestCase, main, run, run_program, scene_file
 from runs import elastic_moduli, on_boundary, with_roles
 
-SMALL = {
-    "Geometry/Arguments": "4, 2 : 0, 0 : 2, 1 : true",
-    "Time/Phases": "1: 4, 2: 4",
-}
+SMALL = {"Geometry/Arguments": "4, 2 : 0, 0 : 2, 1 : true", "Time/Phases": "1: 4, 2: 4"}
 
 
 class Refused(TestCase):

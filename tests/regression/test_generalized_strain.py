@@ -93,10 +93,7 @@ class Patch(TestCase):
         self.check(
             force=0,
             heat=1e-3,
-            **{
-                "Temperature/Value": "20 + 10*t",
-                "Material/Thermal expansion": 1e-4,
-            },
+            **{"Temperature/Value": "20 + 10*t", "Material/Thermal expansion": 1e-4},
         )
 
     def test_ranks(self):

@@ -12,11 +12,7 @@ from runs import EVERY_STEP, Job, elastic_moduli, on_boundary, without_wall_time
 
 E, NU = 1.0, 0.25
 MU = E / (2 + 2 * NU)
-BURGERS = {
-    "Maxwell viscosity": 6.0,
-    "Kelvin modulus": 0.5,
-    "Kelvin viscosity": 0.2,
-}
+BURGERS = {"Maxwell viscosity": 6.0, "Kelvin modulus": 0.5, "Kelvin viscosity": 0.2}
 LUBBY2 = {
     **BURGERS,
     "Maxwell viscosity exponent": -8.0,
@@ -328,10 +324,7 @@ class Scenes(TestCase):
         self.assertLess(errors[1], 4e-4)
         self.assertGreater(np.log2(errors[0] / errors[1]), 1.9)
 
-    ADAPTIVE = {
-        "Mesh refinement/Cell budget": 500,
-        "Time/Phases": "1.5: 8",
-    }
+    ADAPTIVE = {"Mesh refinement/Cell budget": 500, "Time/Phases": "1.5: 8"}
 
     def restarted(self, scene, more, t):
         """A run, which is the same when it goes on one step after t."""
@@ -360,9 +353,7 @@ class Scenes(TestCase):
             self.assertGreater(np.ptp(done["cells"]), 0)
             other = run("pad_adaptive", more, ranks=2)
             for column in "max_displacement", "viscous_dissipation", "cells":
-                self.assertClose(
-                    other[column], done[column], 1e-6, 1e-12, column
-                )
+                self.assertClose(other[column], done[column], 1e-6, 1e-12, column)
 
     def test_transfer(self):
         """On meshes that change, the history goes where z goes: creep is that of
@@ -400,9 +391,7 @@ class Refusals(TestCase):
             ("lubby2", "Kelvin modulus exponent", "1", "is 1; it must be zero or neg"),
         ):
             values = {**(BURGERS if law == "burgers" else LUBBY2), entry: value}
-            self.refused(
-                material(law, values), f"'Material/{law}/{entry}' {sentence}"
-            )
+            self.refused(material(law, values), f"'Material/{law}/{entry}' {sentence}")
 
     def test_no_history(self):
         scene = {"Output/Points": "1, 1", "Output/Point fields": "history"}

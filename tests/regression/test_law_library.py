@@ -21,9 +21,7 @@ PACKAGE = Path(EXECUTABLE).parent
 GAROFALO = {
     **of_law("garofalo", Rate_factor="0.02*(1 + x)", Stress_scale=0.1, Stress_cap=10),
 }
-PARSED = {
-    **of_law("parsed", Strain_rate="0.02*sinh(sigma_eq/0.1)", Factor="1 + x"),
-}
+PARSED = {**of_law("parsed", Strain_rate="0.02*sinh(sigma_eq/0.1)", Factor="1 + x")}
 
 # Laws that do what their names say.
 MISBEHAVING = r"""

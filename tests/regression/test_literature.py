@@ -109,9 +109,7 @@ class Published(TestCase):
             **on_boundary(23, Role="displacement", Displacement="0; -0.006*t"),
             "Time/Phases": "1: 3",
         }
-        friction = {
-            **on_boundary(22, Friction_law="coulomb", Friction_coefficient=0.4),
-        }
+        friction = {**on_boundary(22, Friction_law="coulomb", Friction_coefficient=0.4)}
         smooth, rough = (
             run("literature/roller_on_block", {**roller, **more})
             for more in ({}, friction)
@@ -161,9 +159,7 @@ class Published(TestCase):
             place = abs(face.points[:, :2] - x).sum(axis=1).argmin()
             found = face.point_data["traction"][place, :2]
             # measured: 0.005 and 0.001 of them
-            self.assertClose(
-                found, friction, absolute=error * np.linalg.norm(friction)
-            )
+            self.assertClose(found, friction, absolute=error * np.linalg.norm(friction))
             sticks = face.point_data["stick"][place]
             self.assertEqual(sticks, 1 if x[1] == -1 / 4 else 0)
 

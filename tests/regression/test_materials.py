@@ -46,9 +46,7 @@ class UniformStrain(TestCase):
         for entry, value in LAWS[name][1].items():
             overrides[f"Material/{name}/{entry}"] = value
         result = run("uniform_strain", {**overrides, **more})
-        strain, stress = self.expected(
-            law or LAWS[name][0], result["t"], dim, initial
-        )
+        strain, stress = self.expected(law or LAWS[name][0], result["t"], dim, initial)
         scale = np.abs(stress).max()
         self.assertClose(
             result["stress_norm"],
@@ -200,9 +198,7 @@ class UniformStrain(TestCase):
         self.assertIn("0.03", result.stdout)
         uncapped = run(
             "uniform_strain",
-            {
-                **of_law("norton", Rate_factor=1, Exponent=3, Stress_cap=10),
-            },
+            {**of_law("norton", Rate_factor=1, Exponent=3, Stress_cap=10)},
         )
         self.assertClose(uncapped["capped_volume"], 0)
 
@@ -227,12 +223,8 @@ class Layers(TestCase):
     def check(self, viscosity=lambda y, t: 0.5, ranks=1, **more):
         result = run("layers", more, ranks=ranks)
         bottom, middle = self.foot(result, viscosity)
-        self.assertClose(
-            result["point0_x"], bottom, absolute=1e-9, what="foot"
-        )
-        self.assertClose(
-            result["point1_x"], middle, absolute=1e-9, what="interface"
-        )
+        self.assertClose(result["point0_x"], bottom, absolute=1e-9, what="foot")
+        self.assertClose(result["point1_x"], middle, absolute=1e-9, what="interface")
         self.assertClose(result["max_von_mises"],
                          np.sqrt(3) * 0.1 * np.minimum(result["t"], 2 - result["t"]),
                          absolute=1e-9)
@@ -454,8 +446,7 @@ class Refused(TestCase):
 
     def test_norton_without_a_cap(self):
         self.refused(
-            {"Material/Law": "norton"},
-            "'Material/norton/Stress cap' is not given",
+            {"Material/Law": "norton"}, "'Material/norton/Stress cap' is not given"
         )
 
     def test_negative_creep_rate(self):
@@ -487,8 +478,7 @@ class Refused(TestCase):
         """Told, not refused: expressions may leave one out; its law is not
         even made."""
         result = run(
-            "layers",
-            {"Material 7/Law": "maxwell", "Material 7/maxwell/Viscosity": -1},
+            "layers", {"Material 7/Law": "maxwell", "Material 7/maxwell/Viscosity": -1}
         )
         self.assertRegex(result.stdout, "Warning: 'Material 7' is not used")
 
@@ -595,9 +585,7 @@ class Anisotropy(TestCase):
             gradient = displacement_gradient(t[n], 2)
             stress = apply(0.5 * (gradient + gradient.T)) + z
             norms.append(norm(stress))
-        self.assertClose(
-            result["stress_norm"], norms, absolute=1e-10, what="stress"
-        )
+        self.assertClose(result["stress_norm"], norms, absolute=1e-10, what="stress")
 
 
 if __name__ == "__main__":

@@ -189,8 +189,7 @@ class Converted(TestCase):
             for block, other in zip(mesh.cells, expected.cells):
                 self.assertEqual(block.data.tolist(), other.data.tolist())
         for dimension, kind, nodes in (
-            (2, 8, [0, 1, 3, 2]),
-            (3, 11, [0, 1, 3, 2, 4, 5, 7, 6]),
+            (2, 8, [0, 1, 3, 2]), (3, 11, [0, 1, 3, 2, 4, 5, 7, 6])
         ):
             n = 2**dimension
             text = "# vtk DataFile Version 3.0\n\nASCII\nDATASET UNSTRUCTURED_GRID\n"
@@ -219,9 +218,7 @@ class Converted(TestCase):
 
     def test_numbers_beyond_measure(self):
         for number in (
-            "-99999999999999999999999",
-            "99999999999999999999999",
-            "1000000000001",
+            "-99999999999999999999999", "99999999999999999999999", "1000000000001"
         ):
             reason = f"expected the number of a node, found '{number}"
             self.damaged(".inp", "\n1, 0.0", f"\n{number}, 0.0", reason)

@@ -106,10 +106,7 @@ class Lagged(Contact):
             ][-1]
 
         exact = force(32, **{"Solver/Coulomb tolerance": 1e-9})
-        errors = [
-            abs(force(steps, **LAGGED) - exact)
-            for steps in (4, 8, 16)
-        ]
+        errors = [abs(force(steps, **LAGGED) - exact) for steps in (4, 8, 16)]
         self.assertGreater(errors[-1], 0.02 * exact)
         for coarse, fine in zip(errors, errors[1:]):
             order = np.log2(coarse / fine)
@@ -123,10 +120,7 @@ class Closed(Contact):
     def check(self, place, plate, foundation):
         dim, _, below, _ = place
         normal = "xyz"[dim - 1]
-        body = {
-            **of_law("maxwell", Viscosity=0.5),
-            "Time/Phases": "1: 8, 1.5: 8",
-        }
+        body = {**of_law("maxwell", Viscosity=0.5), "Time/Phases": "1: 8, 1.5: 8"}
         tresca = {"Friction law": "tresca", "Friction bound": 0.05, **foundation}
         open_ = rub(place, {**tresca, "Gap": 0}, plate, body)
         bilateral = {"Contact law": "bilateral", **tresca, "Gap": ""}
@@ -154,9 +148,7 @@ class Closed(Contact):
         )
         for name in "displacement", "stress_xy", "von_mises":
             fields = [result.fields() for result in (open_, closed)]
-            u, v = (
-                {**f.point_data, **f.cell_data}[name].reshape(-1) for f in fields
-            )
+            u, v = ({**f.point_data, **f.cell_data}[name].reshape(-1) for f in fields)
             self.assertLess(abs(u - v).max(), 1e-6 * abs(v).max(), name)
         self.check_identities(open_)
         self.assertGreater(open_["slip_area"].max(), 0.1)
@@ -200,9 +192,7 @@ class Greco(Contact):
     def test_displacements(self):
         """The limit is extrapolated from 128 and 256 cells a side."""
         for cells, steps, ranks, error in (
-            (256, 1, 1, 1e-4),
-            (64, 5, 1, 4e-4),
-            (64, 1, 2, 4e-4),
+            (256, 1, 1, 1e-4), (64, 5, 1, 4e-4), (64, 1, 2, 4e-4)
         ):
             with self.subTest(cells=cells, steps=steps, ranks=ranks):
                 size = "0, 0 : 0.04, 0.04 : true"
@@ -286,10 +276,7 @@ class HardCases(Contact):
             self.assertLess(result["force_balance_defect"][3:].max(), 1e-7)
 
         plate = "-1e-9*max(0, t - 1)", "0", "0"
-        more = {
-            "Time/Phases": "1: 2, 3: 2",
-            "Solver/Coulomb tolerance": 1e-9,
-        }
+        more = {"Time/Phases": "1: 2, 3: 2", "Solver/Coulomb tolerance": 1e-9}
         for friction in FRICTIONLESS, {}:
             self.check_both(check, {"Gap": 0, **friction}, plate, more)
 

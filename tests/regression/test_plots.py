@@ -674,9 +674,7 @@ class Numbers(TestCase):
         }
         self.assertEqual(list(chosen), ["error in the\nenergy norm"])
         panel, names = chosen["error in the\nenergy norm"]
-        self.assertEqual(
-            names, ["estimate_space", "estimate_time", "estimate_total"]
-        )
+        self.assertEqual(names, ["estimate_space", "estimate_time", "estimate_total"])
         figure, axes = plt.subplots()
         history.draw_panel(axes, panel, names, [("", statistics)], Units())
         tops = [line.get_ydata().max() for line in axes.get_lines()[:3]]
@@ -839,9 +837,7 @@ class Pictures(TestCase):
             self.assertEqual(process.stderr, "")
         else:
             self.assertRegex(process.stderr, reason)
-        paths = [
-            result.directory / line for line in process.stdout.strip().split("\n")
-        ]
+        paths = [result.directory / line for line in process.stdout.strip().split("\n")]
         for path in paths:
             self.assertTrue(path.exists(), path)
             if path.suffix == ".png":

@@ -92,12 +92,7 @@ class Estimated(TestCase):
         self.assertLess(quotient, 2 * safety, column)
 
     def test_of_a_moving_front(self):
-        for column in (
-            "friction_force_x",
-            "reaction_3_x",
-            "reaction_2_y",
-            "point0_x",
-        ):
+        for column in ("friction_force_x", "reaction_3_x", "reaction_2_y", "point0_x"):
             coarse = run("slab", of(column, **POINTS, **{"Output/Fields every": 0}))
             self.check(coarse, fine_slab("maxwell"), column, (0.8, 1.5))
 
@@ -186,10 +181,7 @@ class Estimated(TestCase):
         level = {"Geometry/Global refinements": 0}
         fine = run("coulomb_pad_3d", {**scene, **cells, **level, **NO_BAR})
         column = "point0_x"
-        coarse = run(
-            "coulomb_pad_3d",
-            of(column, **scene, **level),
-        )
+        coarse = run("coulomb_pad_3d", of(column, **scene, **level))
         self.check(coarse, fine, column, (0.5, 1.2))
 
     def test_of_contact_that_opens(self):
@@ -203,9 +195,7 @@ class Estimated(TestCase):
             **on_boundary(3, Role="displacement", Displacement="0; -0.08*t"),
             "Time/Phases": "1: 2",
         }
-        soft = {
-            **on_boundary(2, Contact_law="normal compliance", Compliance=2),
-        }
+        soft = {**on_boundary(2, Contact_law="normal compliance", Compliance=2)}
         column = "contact_force_y"
         for more in {}, soft:
             with self.subTest(more):
@@ -746,10 +736,7 @@ class PointInCreep(TestCase):
         """Straight sides and coarse cells err in opposite directions."""
         signed = self.check(
             level=1,
-            **{
-                "Material/norton/Exponent": 5,
-                "Geometry/Boundary refinements": "0: 1",
-            },
+            **{"Material/norton/Exponent": 5, "Geometry/Boundary refinements": "0: 1"},
         )
         # measured: 1.06 to 1.02, the bar 2.1; without sides 1.66 to 1.62, and 3.7 where
         # their size is added
@@ -1223,10 +1210,7 @@ class OnTheBoundary(TestCase):
             "reaction_3_y",
             2 * np.pi / 3 * (80**3 - 50**3),
             **plane,
-            **{
-                "Geometry/Plane model": "axisymmetric",
-                "Loads/Body force": "0; -t",
-            },
+            **{"Geometry/Plane model": "axisymmetric", "Loads/Body force": "0; -t"},
         )
         self.compare(
             "reaction_2_x",
@@ -1238,10 +1222,7 @@ class OnTheBoundary(TestCase):
             "reaction_4_z",
             0.5 * np.pi * 80**2,
             3,
-            **{
-                **solid,
-                **on_boundary(1, Role="traction", Traction="0; 0; -t"),
-            },
+            **{**solid, **on_boundary(1, Role="traction", Traction="0; 0; -t")},
         )
 
 

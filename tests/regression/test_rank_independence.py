@@ -112,11 +112,7 @@ SCENES = {
         # Unloaded, nothing decides who sticks.
         "verification/round_sample": Scene(phases("241: 2")),
         "verification/partial_slip_2d": Scene(
-            {
-                **refined(2),
-                **phases("1: 1, 3: 2"),
-                "Solver/Coulomb tolerance": 1e-10,
-            }
+            {**refined(2), **phases("1: 1, 3: 2"), "Solver/Coulomb tolerance": 1e-10}
         ),
         "verification/flat_punch_2d": Scene(
             {**phases("1: 3"), "Mesh refinement/Cell budget": 400}
@@ -186,12 +182,7 @@ SCENES = {
             # steps below the stability limit of all of them
             f"verification/manufactured/law_{law}": Scene(phases("0.5: 8"), law)
             for law in (
-                "elastic",
-                "norton",
-                "parsed",
-                "perzyna",
-                "perzyna_hardening",
-                "zener",
+                "elastic", "norton", "parsed", "perzyna", "perzyna_hardening", "zener"
             )
         },
     },

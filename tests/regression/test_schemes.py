@@ -271,10 +271,7 @@ class UniformStrain(TestCase):
                 print(f"{name}, {scheme}: errors {errors}, order {measured}")
                 # the onset of flow of perzyna is a kink within a step
                 self.assertClose(
-                    measured,
-                    expected,
-                    absolute=tolerance,
-                    what=f"{name}, {scheme}",
+                    measured, expected, absolute=tolerance, what=f"{name}, {scheme}"
                 )
 
 
@@ -307,9 +304,7 @@ class ShearLayer(TestCase):
         return abs(result["point0_x"][-1] - 0.31)
 
     def test_backward_euler_is_the_right_sum(self):
-        errors = [
-            self.check("backward Euler", n, [0] + n * [1]) for n in (20, 40, 80)
-        ]
+        errors = [self.check("backward Euler", n, [0] + n * [1]) for n in (20, 40, 80)]
         print(f"backward Euler: errors {errors}, orders {orders(errors)}")
         self.assertClose(orders(errors), 1, absolute=0.05, what="order")
 
@@ -611,9 +606,7 @@ class Restart(TestCase):
             whole = without_wall_times(job.results / "statistics.csv")
             job.forget_after(3)
             job.run("--restart", ranks=ranks)
-            self.assertEqual(
-                whole, without_wall_times(job.results / "statistics.csv")
-            )
+            self.assertEqual(whole, without_wall_times(job.results / "statistics.csv"))
 
     def test_all_schemes(self):
         steps = {

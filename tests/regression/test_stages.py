@@ -38,9 +38,7 @@ ALONE_IN_3D = {
 }
 # Cells of several sizes in both blocks, and between them.
 HANGING = {"Geometry/Boundary refinements": "0: 1"}
-FRICTION = {
-    **on_boundary(2, Role="contact", Friction_law="tresca", Friction_bound=0.3),
-}
+FRICTION = {**on_boundary(2, Role="contact", Friction_law="tresca", Friction_bound=0.3)}
 CREEP = {
     "Material 1/Law": "maxwell",
     "Material 1/maxwell/Viscosity": 100,
@@ -238,10 +236,7 @@ class Added(TestCase):
             u = both.vector(name)
             expected = of_weight.vector(name)[-1]
             self.assertClose(
-                u[-1] - u[0],
-                expected,
-                absolute=ABSENT * abs(expected).max(),
-                what=name,
+                u[-1] - u[0], expected, absolute=ABSENT * abs(expected).max(), what=name
             )
         self.assertClose(both["energy_balance_defect"], 0, absolute=1e-12)
 

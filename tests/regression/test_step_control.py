@@ -185,9 +185,7 @@ class DroppedSteps(TestCase):
 
     def test_divided_steps(self):
         self.same_as_given_steps(
-            "slab",
-            {**SMALL, **PERZYNA, "Time/Stiffness policy": "subdivide"},
-            drops=0,
+            "slab", {**SMALL, **PERZYNA, "Time/Stiffness policy": "subdivide"}, drops=0
         )
 
 
@@ -326,9 +324,7 @@ class Times(TestCase):
             self.assertGreater(result["k"][i], 0.45 * result["k"][i - 1])
 
     def test_largest_step(self):
-        result = run(
-            "slab", {**SMALL, **CONTROL, "Step control/Largest step": 0.01}
-        )
+        result = run("slab", {**SMALL, **CONTROL, "Step control/Largest step": 0.01})
         self.assertLess(result["k"].max(), 0.01 * (1 + 1e-9))
 
 

@@ -33,9 +33,7 @@ class BlockOnSprings(TestCase):
         wide = 2.0 if dim == 2 else 1.0
         self.assertClose(result["point1_x"], wide * ratio * p / young, **close)
         self.assertClose(result["spring_energy"], area * p * p, **close)
-        self.assertClose(
-            result["strain_energy"], area * p * p / 2 / young, **close
-        )
+        self.assertClose(result["strain_energy"], area * p * p / 2 / young, **close)
         self.assertClose(
             result["stored_energy"],
             result["spring_energy"] + result["strain_energy"],
@@ -255,9 +253,7 @@ class Strip(TestCase):
         ay, x = f"({a!r}*y)", f"({a!r}*x)"
         c, s = f"cosh{ay}", f"sinh{ay}"
         f0 = f"(({A!r}+{B!r}*y)*{c}+({C!r}+{D!r}*y)*{s})"
-        f1 = (
-            f"(({a * A + D!r}+{a * B!r}*y)*{s}+({B + a * C!r}+{a * D!r}*y)*{c})"
-        )
+        f1 = (f"(({a * A + D!r}+{a * B!r}*y)*{s}+({B + a * C!r}+{a * D!r}*y)*{c})")
         f2 = (
             f"(({a**2 * A + 2 * a * D!r}+{a**2 * B!r}*y)*{c}"
             f"+({2 * a * B + a**2 * C!r}+{a**2 * D!r}*y)*{s})"
@@ -484,8 +480,7 @@ class Refused(TestCase):
     def test_support_beside_contact(self):
         """What meets conditions of a boundary is said."""
         result = run(
-            "springs_block_2d",
-            {"Boundary 0/Role": "clamped", "Time/Phases": "1: 1"},
+            "springs_block_2d", {"Boundary 0/Role": "clamped", "Time/Phases": "1: 1"}
         )
         words = " ".join((result.stdout + result.stderr).split())
         self.assertRegex(words, r"support at the point \(0 0\) is on boundary 0")

@@ -403,8 +403,7 @@ class Arrhenius(TestCase):
             {"Long-term Young's modulus": 1, "Long-term Poisson's ratio": 0.3},
         ),
         "perzyna": (
-            *("Viscosity", 2.0, False),
-            {"Yield radius": 0.1, "Hardening modulus": 0.5},
+            *("Viscosity", 2.0, False), {"Yield radius": 0.1, "Hardening modulus": 0.5}
         ),
     }
 
@@ -703,12 +702,7 @@ class Contact(TestCase):
     """A block that is heated between two rigid platens."""
 
     def block(self, friction, **more):
-        platen = {
-            "Role": "contact",
-            "Contact law": "unilateral",
-            "Gap": 0,
-            **friction,
-        }
+        platen = {"Role": "contact", "Contact law": "unilateral", "Gap": 0, **friction}
         return body(
             "300 + 100*t",
             "8, 8 : 0, 0 : 1, 1",
@@ -797,10 +791,7 @@ class Contact(TestCase):
 
 
 class Refusals(TestCase):
-    creep = {
-        **of_law("norton", Stress_cap=10),
-        "Material/Activation energy": 5e4,
-    }
+    creep = {**of_law("norton", Stress_cap=10), "Material/Activation energy": 5e4}
 
     def refused(self, *words, **entries):
         scene = body("300", *SQUARE)

@@ -115,9 +115,7 @@ class Meshes(TestCase):
         several = run("slab", {**COARSE_SLAB, **to(0.04)}, ranks=3)
         self.assertEqual(list(several["cells"]), list(self.slab["cells"]))
         self.assertClose(several["t"], self.slab["t"], 1e-6)
-        self.assertClose(
-            several["estimate_total"], self.slab["estimate_total"], 1e-5
-        )
+        self.assertClose(several["estimate_total"], self.slab["estimate_total"], 1e-5)
 
 
 class Rounding(TestCase):
@@ -260,9 +258,7 @@ class Kinks(TestCase):
 
     def test_on_3_ranks(self):
         scene = {**self.SCENE, "Time/Phases": "1.86: 9", **to(0.5)}
-        several = run(
-            "slab", {**scene, "Solver/Linear solver": "multigrid"}, ranks=3
-        )
+        several = run("slab", {**scene, "Solver/Linear solver": "multigrid"}, ranks=3)
         self.assertIn(0.93, list(several["t"]))
 
 
@@ -276,8 +272,7 @@ class Restart(TestCase):
                     again.forget_after(n)
                     result = again.run("--restart", ranks=ranks)
                     self.assertEqual(
-                        without_wall_times(result.directory / "statistics.csv"),
-                        rows,
+                        without_wall_times(result.directory / "statistics.csv"), rows
                     )
 
     def test_bit_by_bit(self):

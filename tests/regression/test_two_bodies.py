@@ -226,9 +226,7 @@ class Blocks(TestCase):
         self.assertClose(result["point0_z"][-1], -0.015, 1e-3)
 
 
-GLUED = {
-    **on_boundary(3, Contact_law="bilateral", Friction_law="glued"),
-}
+GLUED = {**on_boundary(3, Contact_law="bilateral", Friction_law="glued")}
 SIDE_BY_SIDE = "6, 4 : 0, 0 : 1, 1 : true | 6, 4 : 0, 1 : 1, 2 : true"
 
 
@@ -238,11 +236,7 @@ class Limits(TestCase):
     def pair_and_one(self, cells, height, load, **more):
         """Two glued blocks of these cells and this height each, and one of both."""
         n, m = cells
-        common = {
-            **TIGHT,
-            **with_roles(free=[0], clamped=[2]),
-            **more,
-        }
+        common = {**TIGHT, **with_roles(free=[0], clamped=[2]), **more}
         two = run(
             "two_blocks_2d",
             {
@@ -367,8 +361,7 @@ class Limits(TestCase):
         a reaction, is that of unilateral contact, where it is a multiplier; that of a
         point, too. With hanging nodes, on ranks."""
         for dim, contact, top, column, ranks in (
-            (2, 3, 23, "point0_y", 1),
-            (3, 5, 25, "point0_z", 3),
+            (2, 3, 23, "point0_y", 1), (3, 5, 25, "point0_z", 3)
         ):
             bilateral, unilateral = (
                 run(
@@ -518,9 +511,7 @@ class Stages(TestCase):
         """A body that comes rests on the other one with its weight from then on, and
         takes it along when it goes; with hanging nodes, on ranks."""
         for dim, ranks, solver in (
-            (2, 1, "direct"),
-            (2, 2, "multigrid"),
-            (3, 3, "algebraic multigrid"),
+            (2, 1, "direct"), (2, 2, "multigrid"), (3, 3, "algebraic multigrid")
         ):
             down = "xyz"[dim - 1]
             common = {
@@ -544,10 +535,7 @@ class Stages(TestCase):
                 # what is added once floated in that instant: 0.05
                 self.check_identities(result, 1e-8)
             # the lower block knows no more than the force, and a little of friction
-            alone, loaded = (
-                comes[f"point1_{down}"][0],
-                always[f"point1_{down}"][-1],
-            )
+            alone, loaded = (comes[f"point1_{down}"][0], always[f"point1_{down}"][-1])
             self.assertClose(goes[f"point1_{down}"][-1], alone, absolute=1e-7)
             self.assertClose(comes[f"point1_{down}"][-1], loaded, relative=0.02)
             self.assertGreater(abs(loaded / alone), 1.5)
@@ -680,9 +668,7 @@ class Slip(TestCase):
         for ranks in 1, 2:
             faces = [
                 run(
-                    "two_blocks_3d",
-                    {**TIGHT, "Output/Fields every": 1},
-                    ranks=ranks,
+                    "two_blocks_3d", {**TIGHT, "Output/Fields every": 1}, ranks=ranks
                 ).fields(series)
                 for series in ("contact", "opposite")
             ]
@@ -748,9 +734,7 @@ class Slip(TestCase):
             },
         )
         force = result["contact_force_y"][-1]
-        modulus, radius = 1 / ((1 - 0.3**2) / 1 + (1 - 0.2**2) / 2), 1 / (
-            1 / 2 + 1 / 4
-        )
+        modulus, radius = 1 / ((1 - 0.3**2) / 1 + (1 - 0.2**2) / 2), 1 / (1 / 2 + 1 / 4)
         pressure = np.sqrt(force * modulus / np.pi / radius)
         width = 2 * np.sqrt(4 * force * radius / np.pi / modulus)
         # measured: 0.4 % more, for bodies that are 7 widths deep

@@ -92,10 +92,7 @@ class Reference(TestCase):
                     for d in range(dim):
                         u = result[f"{point}_{'xyz'[d]}"][i]
                         self.assertClose(
-                            u,
-                            step.u[node, d],
-                            absolute=tolerance * length,
-                            what=point,
+                            u, step.u[node, d], absolute=tolerance * length, what=point
                         )
                 opening = step.gap - step.u[: len(step.p), -1] * -1
                 gap = max(opening.max(), 0)
@@ -332,8 +329,7 @@ class Held(TestCase):
                     }
                     entries = {**self.BLOCK, **block}
                     for name in (
-                        "Boundary 0/Traction",
-                        "Boundary 2/Friction coefficient",
+                        "Boundary 0/Traction", "Boundary 2/Friction coefficient"
                     ):
                         entries.pop(name)
                     result = run("bed", entries, ranks, "")
@@ -605,10 +601,7 @@ class Held(TestCase):
                 self.assertRegex(" ".join(stderr.split()), message)
         # which the law in its own step has
         found = self.run_block(
-            {
-                "Boundary 0/Traction": "0.001*t; 0",
-                "Solver/Coulomb pressure": "Newton",
-            }
+            {"Boundary 0/Traction": "0.001*t; 0", "Solver/Coulomb pressure": "Newton"}
         )
         self.assertClose(found["friction_force_x"][-1], 0.001, relative=1e-5)
 
@@ -774,9 +767,7 @@ class WherePiecesMeet(TestCase):
                 self.check_identities(result, 1e-8, balance=1e-6)
                 resists = bound / n / 2  # of the nodes at the corner
                 self.assertClose(
-                    result["friction_dissipation"][-1],
-                    resists * push,
-                    relative=1e-4,
+                    result["friction_dissipation"][-1], resists * push, relative=1e-4
                 )
                 force = -result[f"contact_force_{'xyz'[dim - 1]}"][-1]
                 self.assertClose(force, resists, relative=1e-4)
@@ -954,9 +945,7 @@ class AtRest(TestCase):
                 result[name], bilateral[name], absolute=1e-7 * size, what=name
             )
         self.assertClose(
-            result["contact_force_y"][1:],
-            -bilateral["reaction_2_y"][1:],
-            relative=1e-7,
+            result["contact_force_y"][1:], -bilateral["reaction_2_y"][1:], relative=1e-7
         )
 
 
@@ -1020,9 +1009,7 @@ class Refused(TestCase):
         results = {unit: in_unit(unit) for unit in (1, 3, 7)}
         # the first step comes to rest above its tolerance, the second below
         for row in 1, 2:
-            norms = [
-                results[unit]["energy_norm"][row] / unit**0.5 for unit in results
-            ]
+            norms = [results[unit]["energy_norm"][row] / unit**0.5 for unit in results]
             spread = (max(norms) - min(norms)) / norms[0]
             for result in results.values():
                 self.assertIn("rounding leaves an error of the solver", result.stdout)

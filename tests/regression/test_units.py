@@ -183,9 +183,7 @@ def documented_units():
 def documented_name(column):
     name = re.sub(r"_[xyz]$", "_x", column)
     name = re.sub(r"^(|reaction_)(point|edge)\d+", r"\1\2<i>", name)
-    return re.sub(
-        r"^(reaction|friction_force|contact_force)_\d+", r"\1_<id>", name
-    )
+    return re.sub(r"^(reaction|friction_force|contact_force)_\d+", r"\1_<id>", name)
 
 
 class Labels(TestCase):
@@ -257,8 +255,7 @@ class Same(TestCase):
             self.assertEqual(text.count('NumberOfComponents="3"'), vectors + 1)
             mine, theirs = self.scene.fields(series), self.plain.fields(series)
             for fields, expected in (
-                (mine.point_data, theirs.point_data),
-                (mine.cell_data, theirs.cell_data),
+                (mine.point_data, theirs.point_data), (mine.cell_data, theirs.cell_data)
             ):
                 self.assertEqual(set(fields), set(expected))
                 for name, values in fields.items():
@@ -365,9 +362,7 @@ class Scaled:
         }
 
     def power(self, powers):
-        return float(
-            np.prod([size**power for size, power in zip(self.sizes, powers)])
-        )
+        return float(np.prod([size**power for size, power in zip(self.sizes, powers)]))
 
     def scene(self, described):
         """The file that `--describe' prints for a scene, in which each entry has
@@ -684,8 +679,7 @@ class Work(TestCase):
         stress, shortest, longest = (float(line.group(i)) for i in (1, 3, 4))
         self.assertEqual(stress, 6)
         for modulus, time in (
-            (25e3 * (1 + 0.25 / 40), longest),
-            (25e3 * (1 + 3.75 / 40), shortest),
+            (25e3 * (1 + 0.25 / 40), longest), (25e3 * (1 + 3.75 / 40), shortest)
         ):
             # |G| = 3 mu A sigma^3 (2/3)^(1/2)
             flow = 3 * modulus / 2.5 * (3.65e-5 / 365.25) * 6**3 * (2 / 3) ** 0.5

@@ -507,7 +507,7 @@ class NonSymmetric(TestCase):
                 for name in "point0_x", "friction_force_x", "stored_energy":
                     for t in 1, 2:
                         scale = abs(fine[name]).max()
-                        # 0.0023 is the largest, of point0_x with hardening
+                        # 0.0042 is the largest, of point0_x with hardening
                         self.assertClose(
                             coarse[name][coarse.row(t)],
                             fine[name][fine.row(t)],

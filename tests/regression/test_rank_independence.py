@@ -372,8 +372,8 @@ class Scenes(SameOnAllRanks):
 
 
 # Two cells, and one, of the slab and the pad.
-TWO_CELLS = {**cells(2, 1, to="2, 1"), **phases("1: 4, 2: 4")}
-ONE_CELL = {**cells(1, 1, 1, to="1, 1, 1"), **phases("1.5: 5")}
+TWO_CELLS = {**cells(2, 1, to="2, 1"), **phases("1: 3, 2: 2")}
+ONE_CELL = {**cells(1, 1, 1, to="1, 1, 1"), **phases("1.5: 4")}
 EVERYTHING = {
     "Material/Stress history": "quadrature points",
     "Error control/Error bar": "true",

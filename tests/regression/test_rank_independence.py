@@ -85,7 +85,7 @@ SCENES = {
     },
     "space": {
         "verification/pad": Scene({**cells(9, 9, 9, to="1, 1, 1"), **phases("1.5: 3")}),
-        "verification/conveyor_3d": Scene(phases("1.5: 4")),
+        "verification/conveyor_3d": Scene(phases("1.5: 8")),
         "verification/coulomb_block_3d": Scene(phases("1: 1, 3: 5")),
         "verification/coulomb_pad_3d": Scene(phases("0.5: 2, 1.5: 4")),
         "verification/springs_block_3d": Scene(),
@@ -176,7 +176,7 @@ SCENES = {
     "manufactured": {
         "verification/manufactured/tresca_2d": Scene(),
         "verification/manufactured/coulomb_2d": Scene(),
-        "verification/manufactured/tresca_3d": Scene(phases("1: 3")),
+        "verification/manufactured/tresca_3d": Scene(phases("1: 4")),
         "verification/manufactured/coulomb_3d": Scene(phases("1: 3")),
         **{
             # steps below the stability limit of all of them

@@ -18,8 +18,7 @@ from suite import case
 def aspect_ratio(size, report):
     n = size(8, 32)
     square = run(
-        "hard/aspect_ratio",
-        {"Geometry/Arguments": f"{n}, {n} : 0, 0 : 1, 1 : true"},
+        "hard/aspect_ratio", {"Geometry/Arguments": f"{n}, {n} : 0, 0 : 1, 1 : true"}
     )
     report.figure("foot in square cells, exact 0.31", square["point0_x"][-1])
 

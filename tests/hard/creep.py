@@ -112,9 +112,7 @@ def viscosity_range(size, report):
     eta = 10 ** (8 * center - 4)
     tau = 0.1 * np.minimum(k * np.arange(steps + 1), 1)
     shear = tau[-1] / mu + k * tau[1:].sum() / eta
-    layers = {
-        "Geometry/Arguments": f"4, {n} : 0, 0 : 1, 1 : true",
-    }
+    layers = {"Geometry/Arguments": f"4, {n} : 0, 0 : 1, 1 : true"}
     for solver in "direct", "multigrid":
         result = run("hard/viscosity_range", {**layers, "Solver/Linear solver": solver})
         report.identities(result, 1e-11)
@@ -238,9 +236,7 @@ def norton_cylinder(size, report):
             0,
             n * size(0.01, 0.001),
         )
-        report.figure(
-            f"n = {n}: order in h", np.log2(coarse / errors[n]), 1.5
-        )
+        report.figure(f"n = {n}: order in h", np.log2(coarse / errors[n]), 1.5)
         count = result["newton_iterations"][1:]
         iterations[n], most[n] = count.mean(), count.max()
         report.figure(f"n = {n}: Newton iterations a step", iterations[n], 0, 6)

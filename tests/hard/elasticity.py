@@ -248,9 +248,7 @@ def contrast(size, report):
     report.figure("active-set iterations a step, one material", plain.mean())
     for name, sign in ("stiff", 1), ("soft", -1):
         near, far = block(10.0 ** (5 * sign)), block(10.0 ** (6 * sign))
-        report.figure(
-            f"10^6 against 10^5, {name} part", difference(far, near), 0, 1e-4
-        )
+        report.figure(f"10^6 against 10^5, {name} part", difference(far, near), 0, 1e-4)
         report.figure(
             f"10^5 against 10^3 over 10^6 against 10^4, {name} part",
             difference(near, block(10.0 ** (3 * sign)))
@@ -351,6 +349,4 @@ def anisotropic(size, report):
 
     counts = [slab(strength) for strength in strengths]
     report.figure("active-set iterations a step without fibres", counts[0])
-    report.figure(
-        "the same, largest over strengths", max(counts), 0, counts[0] + 0.5
-    )
+    report.figure("the same, largest over strengths", max(counts), 0, counts[0] + 0.5)

@@ -51,8 +51,7 @@ class Box:
         self.n_dofs = nodes.size * dim
         clamped = nodes[..., n].ravel()
         self.free = np.setdiff1d(
-            np.arange(self.n_dofs),
-            (clamped[:, None] * dim + np.arange(dim)).ravel(),
+            np.arange(self.n_dofs), (clamped[:, None] * dim + np.arange(dim)).ravel()
         )
         self.lower_corners = (
             np.stack(np.meshgrid(*dim * [np.arange(n)], indexing="ij"), axis=-1)
@@ -105,9 +104,7 @@ class Box:
             )
             for i, corner in enumerate(self.corners):
                 np.add.at(
-                    result,
-                    self.dofs[:, i * self.dim],
-                    values * shape(point, corner),
+                    result, self.dofs[:, i * self.dim], values * shape(point, corner)
                 )
         return result[self.free]
 

@@ -9,6 +9,7 @@ accumulation in slip; where two runs must agree they do so to twice that.
 import numpy as np
 
 from harness import run
+from runs import on_boundary
 from suite import case
 
 GROUP = "Friction"
@@ -105,10 +106,7 @@ def bounds_of_every_size(size, report):
     corrections(report, *runs.values())
 
 
-@case(
-    GROUP,
-    "patches of bound 0 and 1e12 are patches without friction and glued ones",
-)
+@case(GROUP, "patches of bound 0 and 1e12 are patches without friction and glued ones")
 def bound_discontinuous(size, report):
     n = size(16, 64)
     mesh = {
@@ -126,8 +124,7 @@ def bound_discontinuous(size, report):
         **{
             "Geometry/Boundary ids": "if(id == 2 && sin(4*pi*x) < 0, 4, id)",
             "Boundary 2/Friction law": "none",
-            "Boundary 4/Role": "contact",
-            "Boundary 4/Friction law": "glued",
+            **on_boundary(4, Role="contact", Friction_law="glued"),
         },
     )
     report.identities(jumps, 1e-10)
@@ -176,8 +173,7 @@ def bound_zero_on_part(size, report):
         **{
             "Geometry/Boundary ids": "if(id == 2 && x < 1, 4, id)",
             "Boundary 2/Friction bound": 0.05,
-            "Boundary 4/Role": "contact",
-            "Boundary 4/Friction law": "none",
+            **on_boundary(4, Role="contact", Friction_law="none"),
         },
     )
     report.identities(zero, 1e-10)
@@ -348,8 +344,7 @@ HELD = {
     key: value
     for side in range(4)
     for key, value in {
-        f"Boundary {side}/Role": "displacement",
-        f"Boundary {side}/Displacement": "free; free; 0",
+        **on_boundary(side, Role="displacement", Displacement="free; free; 0"),
     }.items()
 } | {"Material/Poisson's ratio": 0}
 

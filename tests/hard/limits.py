@@ -97,9 +97,7 @@ MEMORY = "refinements' = .* would make about .* whose mesh alone takes .* GB"
 BOX = " : 0, 0 : 2, 1 : true"
 CUBE = " : 0, 0, 0 : 1, 1, 1 : true"
 G, R, B = (
-    "Geometry/Arguments",
-    "Geometry/Global refinements",
-    "Geometry/Boundary refinements",
+    "Geometry/Arguments", "Geometry/Global refinements", "Geometry/Boundary refinements"
 )
 
 # Dimension, entry, value, ranks, what is said.  46341^2 is next to 2^31, 65536^2

@@ -2,6 +2,7 @@
 """Contact that opens, with Coulomb's friction of the pressure of the step itself."""
 
 from harness import run
+from runs import on_boundary
 from suite import case
 
 GROUP = "Contact that opens"
@@ -58,8 +59,7 @@ def sharp_indenter(size, report):
         result = run(
             "partial_slip_2d",
             {
-                "Boundary 4/Gap": f"{slope}*abs(x)",
-                "Boundary 4/Foundation motion": "",
+                **on_boundary(4, Gap=f"{slope}*abs(x)", Foundation_motion=""),
                 "Boundary 4/Friction coefficient": friction,
                 "Geometry/Boundary refinements": f"4: {size(2, 4)}",
                 "Material/Poisson's ratio": 0.3,
@@ -161,10 +161,8 @@ def grazing(size, report):
         result = run(
             "partial_slip_2d",
             {
-                "Boundary 4/Gap": 0,
-                "Boundary 4/Foundation displacement": "-1e-9*max(0, t - 1)",
-                "Boundary 4/Foundation motion": "",
-                "Boundary 4/Friction coefficient": friction,
+                **on_boundary(4, Gap=0, Foundation_displacement="-1e-9*max(0, t - 1)"),
+                **on_boundary(4, Foundation_motion="", Friction_coefficient=friction),
                 "Geometry/Boundary refinements": f"4: {size(1, 3)}",
                 "Solver/Coulomb pressure": "Newton",
                 "Time/Phases": "1: 1, 3: 2",

@@ -123,8 +123,7 @@ def slip_events(size, report):
     )
     t, k = result["t"], result["k"]
     for name, exact, phase in (
-        ("onset", 1 + 0.104 / 0.3, 1),
-        ("return", 3 - 0.092 / 0.3, 2),
+        ("onset", 1 + 0.104 / 0.3, 1), ("return", 3 - 0.092 / 0.3, 2)
     ):
         found = int(np.argmax((result["slip_area"] > 1) & (t > exact - 0.1)))
         report.figure(

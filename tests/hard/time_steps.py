@@ -91,8 +91,7 @@ def tiny_steps(size, report):
     for scheme in SCHEMES:
         plain = in_steps(phases(""), scheme)
         for name, inserted in (
-            ("1e-11", "0.65000001: 1000, "),
-            ("1e-14", "0.65000000000001: 1, "),
+            ("1e-11", "0.65000001: 1000, "), ("1e-14", "0.65000000000001: 1, ")
         ):
             result = in_steps(phases(inserted), scheme)
             report.identities(result, 1e-10)

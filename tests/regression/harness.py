@@ -14,8 +14,10 @@ KEEP_RESULTS to a directory to keep them.
 import atexit
 import csv
 import json
+import multiprocessing
 import os
 import re
+import runpy
 import shutil
 import subprocess
 import sys
@@ -266,17 +268,47 @@ def study_environment():
     }
 
 
+def forked(command, task, work=None):
+    """A task in a fork of this process, which has loaded what takes long to load, as
+    the subprocess.CompletedProcess of a command that does the same."""
+    command = list(map(str, command))
+    with tempfile.TemporaryFile("w+") as out, tempfile.TemporaryFile("w+") as err:
+
+        def run_it():
+            with open(os.devnull) as nothing:
+                for number, file in enumerate((nothing, out, err)):
+                    os.dup2(file.fileno(), number)
+            os.chdir(work or ".")
+            sys.argv = command
+            task()
+
+        sys.stdout.flush()
+        sys.stderr.flush()
+        process = multiprocessing.get_context("fork").Process(target=run_it)
+        process.start()
+        process.join()
+        streams = []
+        for file in out, err:
+            file.seek(0)
+            streams.append(file.read())
+    return subprocess.CompletedProcess(command, process.exitcode, *streams)
+
+
 def run_study(arguments, ranks, work, code=None):
     """A study, effects or price as a subprocess.CompletedProcess."""
-    process = subprocess.run(
-        study_command(arguments[0], "-n", ranks, *arguments[1:]),
-        cwd=work,
-        env=study_environment(),
-        stdin=subprocess.DEVNULL,
-        capture_output=True,
-        text=True,
-    )
-    return expect(process, code)
+    package = str(SOURCE / "contrib" / "python")
+    if package not in sys.path:
+        sys.path.insert(0, package)
+    from viscoplastic_contact.study import effects, price_report, pricing  # noqa: F401
+
+    def task():
+        os.environ.update(study_environment())
+        runpy.run_module(
+            "viscoplastic_contact.study", run_name="__main__", alter_sys=True
+        )
+
+    command = ["study", arguments[0], "-n", ranks, *arguments[1:]]
+    return expect(forked(command, task, work), code)
 
 
 def launcher(ranks):

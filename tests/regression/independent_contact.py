@@ -65,9 +65,7 @@ SCENES = {
         "top": "0.01*sin(pi*t); -0.006*min(t, 2 - t)",
         "tractions": {0: "0.03*sin(2*pi*t); 0"}, "phases": "1: 5, 1.8: 4",
     },
-    "lagged": {
-        **SOFT, **PRESSED, "law": "lagged", "mu": "0.3", "phases": "1: 5, 2: 5",
-    },
+    "lagged": {**SOFT, **PRESSED, "law": "lagged", "mu": "0.3", "phases": "1: 5, 2: 5"},
     "steep": {
         **PLATE, **ROUGH, "cells": (12, 8), "law": "lagged", "mu": "1",
         "top": "0.05*t; -0.02*min(4*t, 1)",

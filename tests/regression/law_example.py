@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """The shared library of doc/adding_a_law.md, built as that page says."""
 
+import os
 import re
 import subprocess
 
@@ -30,14 +31,16 @@ def write_project(directory):
 
 
 def build(directory, *options):
-    """The library, from the project in a directory; options are for cmake."""
+    """The library, from the project in a directory; options are for cmake. What ccache
+    keeps for it (see python_test_environment) holds for directories of other names."""
     build = directory / "build"
+    environment = {**os.environ, "CCACHE_BASEDIR": str(directory.parent)}
     for command in (
-        ["cmake", "-S", directory, "-B", build, *options],
-        ["cmake", "--build", build],
+        ["cmake", "-S", directory, "-B", build, *options], ["cmake", "--build", build]
     ):
         process = subprocess.run(
             list(map(str, command)),
+            env=environment,
             stdout=subprocess.PIPE,
             stderr=subprocess.STDOUT,
             text=True,

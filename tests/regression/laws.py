@@ -81,8 +81,7 @@ def parsed(stress, strain, x, t):
 LAWS = {
     "maxwell": (maxwell, {"Viscosity": 0.5}),
     "perzyna": (
-        perzyna,
-        {"Yield radius": 0.02, "Hardening modulus": 0.3, "Viscosity": 0.8},
+        perzyna, {"Yield radius": 0.02, "Hardening modulus": 0.3, "Viscosity": 0.8}
     ),
     "zener": (
         zener,

@@ -7,14 +7,11 @@ start of Python and of matplotlib.  A process that is forked has both already;
 all that the script itself does is done anew.
 """
 
-import multiprocessing
-import os
 import runpy
 import subprocess
 import sys
-import tempfile
 
-from harness import SOURCE
+from harness import SOURCE, forked
 
 PLOT = SOURCE / "contrib" / "plot"
 sys.path.insert(0, str(SOURCE / "contrib"))
@@ -25,9 +22,7 @@ import plotting.command  # what a forked process finds loaded
 def plot_afresh(*arguments):
     """In a Python of its own, which has to find everything."""
     return subprocess.run(
-        [sys.executable, PLOT, *map(str, arguments)],
-        capture_output=True,
-        text=True,
+        [sys.executable, PLOT, *map(str, arguments)], capture_output=True, text=True
     )
 
 
@@ -37,22 +32,6 @@ def plot(*arguments):
 
 
 def run_script(script, *arguments):
-    command = [str(script), *map(str, arguments)]
-    with tempfile.TemporaryFile("w+") as out, tempfile.TemporaryFile("w+") as err:
-
-        def run_it():
-            os.dup2(out.fileno(), 1)
-            os.dup2(err.fileno(), 2)
-            sys.argv = command
-            runpy.run_path(command[0], run_name="__main__")
-
-        sys.stdout.flush()
-        sys.stderr.flush()
-        process = multiprocessing.get_context("fork").Process(target=run_it)
-        process.start()
-        process.join()
-        streams = []
-        for file in out, err:
-            file.seek(0)
-            streams.append(file.read())
-    return subprocess.CompletedProcess(command, process.exitcode, *streams)
+    return forked(
+        [script, *arguments], lambda: runpy.run_path(str(script), run_name="__main__")
+    )

@@ -63,9 +63,7 @@ def relative(one, other, size):
 
 
 def largest(arrays):
-    return max(
-        (abs(a[np.isfinite(a)]).max(initial=0.0) for a in arrays), default=0.0
-    )
+    return max((abs(a[np.isfinite(a)]).max(initial=0.0) for a in arrays), default=0.0)
 
 
 def family(name, names):

@@ -179,8 +179,7 @@ def manufactured(name, law=None, **overrides):
     text = (folder / f"{name}.prm").read_text()
     if law is not None:
         text = text.replace(
-            text[text.index("  set Law ") : text.index("end\n\n# the sides")],
-            "",
+            text[text.index("  set Law ") : text.index("end\n\n# the sides")], ""
         )
         text += (folder / f"law_{law}.prm").read_text()
     return run(name, {"Output/Fields every": 0, **overrides}, text=text)
@@ -192,6 +191,41 @@ def boundaries(*roles):
         f"Boundary {i}/{name}": value
         for i, role in enumerate(roles)
         for name, value in ({"Role": role} if isinstance(role, str) else role).items()
+    }
+
+
+def on_boundary(number, **values):
+    """Entries of one boundary; _ is a blank of their names."""
+    return {
+        f"Boundary {number}/{name.replace('_', ' ')}": value
+        for name, value in values.items()
+    }
+
+
+def with_roles(**boundaries):
+    """Entries of {role: numbers of boundaries}."""
+    return {
+        f"Boundary {number}/Role": role
+        for role, numbers in boundaries.items()
+        for number in numbers
+    }
+
+
+def of_law(name, **parameters):
+    """Entries of a law and its parameters; _ is a blank of their names."""
+    return {
+        "Material/Law": name,
+        **{
+            f"Material/{name}/{parameter.replace('_', ' ')}": value
+            for parameter, value in parameters.items()
+        },
+    }
+
+
+def elastic_moduli(youngs_modulus, poissons_ratio):
+    return {
+        "Material/Young's modulus": youngs_modulus,
+        "Material/Poisson's ratio": poissons_ratio,
     }
 
 

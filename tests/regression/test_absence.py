@@ -64,9 +64,7 @@ class ElasticFrictionless(TestCase):
 
     def test_without_contact_no_contact_series(self):
         """The foundation at rest replaced by a symmetry plane."""
-        result = run(
-            "elastic_frictionless", {"Boundary 2/Role": "symmetry"}
-        )
+        result = run("elastic_frictionless", {"Boundary 2/Role": "symmetry"})
         self.assertFalse((result.directory / "contact.pvd").exists())
         self.assertFalse(list(result.directory.glob("contact_*")))
 

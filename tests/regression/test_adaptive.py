@@ -4,6 +4,7 @@
 import numpy as np
 
 from harness import TestCase, as_prm, lattice, main, run
+from runs import elastic_moduli, of_law, on_boundary
 
 
 def face_sizes(contact):
@@ -166,9 +167,7 @@ class Combinations(TestCase):
         "corner_coulomb_90_2d": {  # two friction points at a node
             "Boundary 0/Friction coefficient": "0.3 + 0.2*y",
         },
-        "corner_tresca_150_2d": {
-            "Boundary 0/Friction bound": "0.01*t",
-        },
+        "corner_tresca_150_2d": {"Boundary 0/Friction bound": "0.01*t"},
         "corner_tresca_90_3d": {  # hanging nodes next to an edge
             "Boundary 0/Friction bound": "0.01*t",
         },
@@ -176,9 +175,7 @@ class Combinations(TestCase):
             "Boundary 2/Friction bound": "0.1 + 0.05*x",
             "Mesh refinement/Every n steps": 5,
         },
-        "elastic_frictionless": {
-            "Boundary 1/Traction": "0.1*t*y; 0",
-        },
+        "elastic_frictionless": {"Boundary 1/Traction": "0.1*t*y; 0"},
     }
 
     def test_identities(self):
@@ -287,21 +284,15 @@ class Held(TestCase):
             "Geometry/Generator": "subdivided_hyper_rectangle",
             "Geometry/Arguments": "2, 1, 1 : 0, 0, 0 : 1, 1, 0.0269 : true",
             "Geometry/Global refinements": 1,
-            "Material/Young's modulus": "if(y > 0.4, 1.3, 0.43)",
-            "Material/Poisson's ratio": 0.25,
-            "Material/Law": "maxwell",
-            "Material/maxwell/Viscosity": 0.2,
-            "Boundary 0/Role": "contact",
-            "Boundary 0/Contact law": "unilateral",
-            "Boundary 0/Gap": 0.005,
-            "Boundary 0/Foundation normal": "-1.3, 0, -0.3",
-            "Boundary 0/Friction law": "tresca",
+            **elastic_moduli("if(y > 0.4, 1.3, 0.43)", 0.25),
+            **of_law("maxwell", Viscosity=0.2),
+            **on_boundary(0, Role="contact", Contact_law="unilateral", Gap=0.005),
+            **on_boundary(0, Foundation_normal="-1.3, 0, -0.3", Friction_law="tresca"),
             "Boundary 0/Friction bound": "0.00025*t",
             **{f"Boundary {id}/Role": "free" for id in (1, 3, 4)},
             "Boundary 2/Role": "displacement",
             "Boundary 2/Displacement": "0; 0.015*t; 0.005*sin(4*t)",
-            "Boundary 5/Role": "traction",
-            "Boundary 5/Traction": "0; -0.013*min(t, 0.5); 0",
+            **on_boundary(5, Role="traction", Traction="0; -0.013*min(t, 0.5); 0"),
             "Mesh refinement/Strategy": "residual",
             "Mesh refinement/Every n steps": 2,
             "Mesh refinement/Maximal level": 2,
@@ -333,10 +324,8 @@ class Reports(TestCase):
     BLOCK = as_prm(
         {
             "Boundary 0/Role": "clamped",
-            "Boundary 1/Role": "traction",
-            "Boundary 1/Traction": "0.01*t; 0",
-            "Boundary 2/Role": "contact",
-            "Boundary 2/Friction law": "tresca",
+            **on_boundary(1, Role="traction", Traction="0.01*t; 0"),
+            **on_boundary(2, Role="contact", Friction_law="tresca"),
             "Boundary 2/Friction bound": "1e-9",
             "Boundary 3/Role": "free",
             "Output/Fields every": "0",
@@ -380,9 +369,7 @@ class Reports(TestCase):
             3: "t*(0.1*x + 0.04*y); t*(0.02*x - 0.07*y); 0.03*t*(x - z)",
         }
         for dim, solver, ranks in (
-            (2, "direct", 1),
-            (2, "multigrid", 2),
-            (3, "multigrid", 3),
+            (2, "direct", 1), (2, "multigrid", 2), (3, "multigrid", 3)
         ):
             with self.subTest(dim=dim, solver=solver):
                 result = run(

@@ -9,7 +9,7 @@ import numpy as np
 from scipy.integrate import solve_ivp
 
 from harness import TestCase, main, run
-from runs import boundaries
+from runs import boundaries, elastic_moduli, of_law, on_boundary
 
 RING = {"Dimension": 2, "Geometry/Plane model": "axisymmetric"}
 
@@ -201,12 +201,8 @@ class Creep(TestCase):
 
     RATE, N = 3.125e-14, 5
     STEEL = {
-        "Material/Young's modulus": 2e5,
-        "Material/Poisson's ratio": 0.3,
-        "Material/Law": "norton",
-        "Material/norton/Rate factor": RATE,
-        "Material/norton/Exponent": N,
-        "Material/norton/Stress cap": 1000,
+        **elastic_moduli(2e5, 0.3),
+        **of_law("norton", Rate_factor=RATE, Exponent=N, Stress_cap=1000),
         "Initial state/Equilibrate": "true",
         "Time/Scheme": "backward Euler",
         "Time/Phases": "1: 10, 10: 10",
@@ -340,12 +336,8 @@ class Creep(TestCase):
         the same factor on finer meshes. Second order."""
         rate, n, p = 6e-6, 3, 15
         rock = {
-            "Material/Young's modulus": 25000,
-            "Material/Poisson's ratio": 0.25,
-            "Material/Law": "norton",
-            "Material/norton/Rate factor": rate,
-            "Material/norton/Exponent": n,
-            "Material/norton/Stress cap": 60,
+            **elastic_moduli(25000, 0.25),
+            **of_law("norton", Rate_factor=rate, Exponent=n, Stress_cap=60),
             "Initial state/Stress": "-20; -20; -20; 0",
             "Time/Scheme": "backward Euler",
             "Time/Phases": "1: 4, 100: 6, 1e4: 6, 1e6: 6, 1e8: 6",
@@ -463,9 +455,7 @@ class Contact(TestCase):
         self.assertLess(errors[-1][0], 0.003)
 
         # twice as deep as the punch
-        cone = indent(
-            3, "x < 2", Gap="0.04/pi*x", Foundation_displacement="-0.02*t"
-        )
+        cone = indent(3, "x < 2", Gap="0.04/pi*x", Foundation_displacement="-0.02*t")
         # measured: 0.003; the radius to a cell
         self.assertClose(-cone["contact_force_y"][-1], 0.02 * modulus, relative=0.004)
         self.assertClose(np.sqrt(cone["contact_area"][-1] / np.pi), 1, absolute=0.125)
@@ -568,10 +558,8 @@ class Contact(TestCase):
         """A ball that creeps, on a plane with Coulomb friction, is that in 3D up to
         the error of its coarse mesh."""
         creep = {
-            "Material/Law": "maxwell",
-            "Material/maxwell/Viscosity": 1,
-            "Boundary 4/Friction law": "coulomb",
-            "Boundary 4/Friction coefficient": 0.1,
+            **of_law("maxwell", Viscosity=1),
+            **on_boundary(4, Friction_law="coulomb", Friction_coefficient=0.1),
             "Time/Phases": "1: 4",
             "Solver/Contact tolerance": 1e-8,
             "Output/Fields every": 0,

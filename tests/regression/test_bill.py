@@ -4,6 +4,7 @@
 import re
 
 from harness import TestCase, main, run
+from runs import of_law, on_boundary
 
 SMALL = {
     "Geometry/Arguments": "8, 4 : 0, 0 : 2, 1 : true",
@@ -67,12 +68,7 @@ class NeverActed(TestCase):
     def test_yield_and_hardening(self):
         self.check(
             "slab",
-            {
-                **SMALL,
-                "Material/Law": "perzyna",
-                "Material/perzyna/Yield radius": 10,
-                "Material/perzyna/Hardening modulus": 1,
-            },
+            {**SMALL, **of_law("perzyna", Yield_radius=10, Hardening_modulus=1)},
             (
                 "viscoplastic flow has never acted",
                 "'Material/perzyna/Yield radius', so that no hardening",
@@ -87,8 +83,7 @@ class NeverActed(TestCase):
             {
                 **SMALL,
                 "Boundary 0/Traction": "0*t; 0",
-                "Boundary 1/Role": "traction",
-                "Boundary 1/Traction": "0.1*t*x; 0",
+                **on_boundary(1, Role="traction", Traction="0.1*t*x; 0"),
                 "Loads/Body force": "0; t - t",
             },
             (
@@ -105,10 +100,8 @@ class NeverActed(TestCase):
             "slab",
             {
                 **SMALL,
-                "Boundary 1/Role": "displacement",
-                "Boundary 1/Displacement": "free; 0",
-                "Boundary 1/Traction": "0*t; 0",
-                "Boundary 1/Pressure": "0*t",
+                **on_boundary(1, Role="displacement", Displacement="free; 0"),
+                **on_boundary(1, Traction="0*t; 0", Pressure="0*t"),
             },
             ("what 'Boundary 1/Traction' and 'Boundary 1/Pressure' gives",),
             ("'Role' = free",),
@@ -130,11 +123,7 @@ class NeverActed(TestCase):
         )
         self.check(
             "slab",
-            {
-                **SMALL,
-                "Boundary 2/Friction bound": 10,
-                "Boundary 2/Contact law": "unilateral",
-            },
+            {**SMALL, **on_boundary(2, Friction_bound=10, Contact_law="unilateral")},
             ("friction has never acted: nothing has slipped",),
             ("glued",),
         )
@@ -148,8 +137,7 @@ class NeverActed(TestCase):
                 {
                     **SMALL,
                     "Geometry/Arguments": f"{cells} : 0, 0 : 2, 1 : true",
-                    "Boundary 2/Contact law": "unilateral",
-                    "Boundary 2/Friction law": "none",
+                    **on_boundary(2, Contact_law="unilateral", Friction_law="none"),
                     "Boundary 2/Gap": 10,
                     "Time/Phases": "1: 1",
                 },
@@ -163,8 +151,7 @@ class NeverActed(TestCase):
             {
                 **SMALL,
                 "Boundary 2/Foundation motion": "0*t; 0",
-                "Boundary 0/Role": "traction",
-                "Boundary 0/Traction": "0.1*t; 0",
+                **on_boundary(0, Role="traction", Traction="0.1*t; 0"),
             },
             ("'Boundary 2/Foundation motion' can go",),
         )

@@ -23,21 +23,18 @@ SCENES = {
         "Geometry/Arguments": "16, 8 : 0, 0 : 2, 1 : true",
         "Time/Phases": "0.5: 3, 1: 12, 2: 6",
     },
-    "slab_adaptive": {"Time/Phases": "1: 8, 2: 4"},
+    "slab_adaptive": {"Time/Phases": "1: 5, 2: 3"},
     "pad": {
         "Geometry/Arguments": "4, 4, 4 : 0, 0, 0 : 1, 1, 1 : true",
         "Time/Phases": "0.8: 4, 1.5: 4",
     },
     "pad_adaptive": {
-        "Time/Phases": "0.8: 4, 1.2: 2",
-        "Mesh refinement/Cell budget": 300,
+        "Time/Phases": "0.8: 3, 1.2: 1",
+        "Mesh refinement/Cell budget": 200,
     },
 }
 LAWS = {}, NORTON, PERZYNA, HARDENING, pressure(3, 0.25)
-CONTROL = {
-    "Step control/Event tolerance": 0.02,
-    "Step control/Landing times": "0.37",
-}
+CONTROL = {"Step control/Event tolerance": 0.02, "Step control/Landing times": "0.37"}
 
 
 def draw(choose):

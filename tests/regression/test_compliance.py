@@ -7,6 +7,7 @@ Against closed forms; an independent solver has it in test_unilateral.py.
 import numpy as np
 
 from harness import TestCase, lattice, main, run
+from runs import elastic_moduli, of_law, on_boundary, with_roles
 
 # The stress of confined compression by 1 for E = 1 and nu = 0.3.
 CONFINED = (1 - 0.3) / ((1 + 0.3) * (1 - 2 * 0.3))
@@ -28,8 +29,7 @@ def bar(dim, compliance, exponent, **more):
         }[dim],
         "Geometry/Boundary ids": f"if(id == {bottom} && x > 1, {half}, id)",
         "Geometry/Boundary refinements": f"{half}: 1",
-        "Material/Young's modulus": 1,
-        "Material/Poisson's ratio": 0.3,
+        **elastic_moduli(1, 0.3),
         "Material/Law": "elastic",
         f"Boundary {top}/Role": "displacement",
         f"Boundary {top}/Displacement": "0; " * (dim - 1) + "-0.06*t",
@@ -128,27 +128,20 @@ class ByHand(TestCase):
         makes of the way is no force."""
         weight, exponent = 0.002135 * 0.189 + 0.0004237, 1.5
         for compliance, solver, ranks in (
-            (2.065e-4, "direct", 1),
-            (2.065e-4, "multigrid", 2),
-            (2e-10, "direct", 1),
+            (2.065e-4, "direct", 1), (2.065e-4, "multigrid", 2), (2e-10, "direct", 1)
         ):
             scene = {
                 "Dimension": 2,
                 "Geometry/Generator": "subdivided_hyper_rectangle",
                 "Geometry/Arguments": "2, 1 : 0, 0 : 1, 0.189 : true",
                 "Geometry/Global refinements": 3,
-                "Material/Young's modulus": "if(x < 0.5, 0.4447, 222.2)",
-                "Material/Poisson's ratio": "if(x < 0.5, 0, 0.3)",
+                **elastic_moduli("if(x < 0.5, 0.4447, 222.2)", "if(x < 0.5, 0, 0.3)"),
                 "Loads/Body force": "0; -0.002135*(1 + t)",
-                "Boundary 0/Role": "symmetry",
-                "Boundary 1/Role": "free",
-                "Boundary 2/Role": "contact",
-                "Boundary 2/Contact law": "normal compliance",
-                "Boundary 2/Compliance": compliance,
-                "Boundary 2/Compliance exponent": exponent,
+                **with_roles(symmetry=[0], free=[1]),
+                **on_boundary(2, Role="contact", Contact_law="normal compliance"),
+                **on_boundary(2, Compliance=compliance, Compliance_exponent=exponent),
                 "Boundary 2/Friction law": "none",
-                "Boundary 3/Role": "traction",
-                "Boundary 3/Traction": "0; -0.0004237*(1 + t)",
+                **on_boundary(3, Role="traction", Traction="0; -0.0004237*(1 + t)"),
                 "Initial state/Equilibrate": "true",
                 "Time/Phases": "1: 2",
                 "Solver/Linear solver": solver,
@@ -172,16 +165,11 @@ class Limit(TestCase):
         plate = {
             "Geometry/Generator": "subdivided_hyper_rectangle",
             "Geometry/Arguments": "16, 8 : 0, 0 : 2, 1 : true",
-            "Material/Young's modulus": 1,
-            "Material/Poisson's ratio": 0.3,
-            "Material/Law": "maxwell",
-            "Material/maxwell/Viscosity": 2,
-            "Boundary 0/Role": "free",
-            "Boundary 1/Role": "free",
-            "Boundary 2/Role": "contact",
-            "Boundary 2/Contact law": "unilateral",
-            "Boundary 2/Gap": "0.004*(x - 1)^2",
-            "Boundary 2/Friction law": "coulomb",
+            **elastic_moduli(1, 0.3),
+            **of_law("maxwell", Viscosity=2),
+            **with_roles(free=[0, 1]),
+            **on_boundary(2, Role="contact", Contact_law="unilateral"),
+            **on_boundary(2, Gap="0.004*(x - 1)^2", Friction_law="coulomb"),
             "Boundary 2/Friction coefficient": 0.3,
             "Boundary 3/Role": "displacement",
             "Boundary 3/Displacement": "0.02*sin(3*t); -0.02*sin(2*t)",
@@ -219,22 +207,15 @@ class Limit(TestCase):
             "Geometry/Generator": "subdivided_hyper_rectangle",
             "Geometry/Arguments": "8, 4 : 0, 0 : 2, 1 : true",
             "Material/Law": "elastic",
-            "Boundary 0/Role": "free",
-            "Boundary 1/Role": "free",
-            "Boundary 2/Role": "contact",
-            "Boundary 2/Contact law": "unilateral",
-            "Boundary 2/Gap": "0.02*(x - 1)^2",
-            "Boundary 2/Friction law": "coulomb",
+            **with_roles(free=[0, 1]),
+            **on_boundary(2, Role="contact", Contact_law="unilateral"),
+            **on_boundary(2, Gap="0.02*(x - 1)^2", Friction_law="coulomb"),
             "Boundary 2/Friction coefficient": 0.3,
-            "Boundary 3/Role": "displacement",
-            "Boundary 3/Displacement": "0.01*t; -0.02*t",
+            **on_boundary(3, Role="displacement", Displacement="0.01*t; -0.02*t"),
             "Time/Phases": "1: 8",
             **ADAPTIVE,
         }
-        soft = {
-            "Boundary 2/Contact law": "normal compliance",
-            "Boundary 2/Compliance": 1e7,
-        }
+        soft = {**on_boundary(2, Contact_law="normal compliance", Compliance=1e7)}
         rigid = run("plate", plate, text="")
         result = run("plate", {**plate, **soft}, text="")
         self.assertGreater(result["cells"][-1], 2 * result["cells"][0])
@@ -254,14 +235,11 @@ class Seam(TestCase):
                 "Geometry/Arguments": "8, 4 : 0, 0 : 2, 1 : true",
                 "Geometry/Boundary ids": "if(id == 2 && x > 1, 4, id)",
                 "Material/Law": "elastic",
-                "Boundary 0/Role": "free",
-                "Boundary 1/Role": "free",
-                "Boundary 3/Role": "displacement",
+                **with_roles(free=[0, 1], displacement=[3]),
                 "Boundary 3/Displacement": "0; -0.01*min(1, 5*t)",
                 "Time/Phases": "1: 10",
                 f"Boundary {hard}/Contact law": "unilateral",
-                f"Boundary {soft}/Contact law": "normal compliance",
-                f"Boundary {soft}/Compliance": 3,
+                **on_boundary(soft, Contact_law="normal compliance", Compliance=3),
             }
             for piece in hard, soft:
                 for name, value in contact.items():
@@ -354,15 +332,11 @@ class Refused(TestCase):
             "Geometry/Arguments": "2, 2 : 0, 0 : 0.0758, 1 : true",
             "Geometry/Boundary ids": "if(id == 2 && x > 0.0379, 7, id)",
             "Geometry/Global refinements": 2,
-            "Material/Young's modulus": 1.521,
-            "Material/Poisson's ratio": 0.499,
+            **elastic_moduli(1.521, 0.499),
             **{f"Boundary {side}/Role": "free" for side in (0, 1, 7)},
-            "Boundary 2/Role": "contact",
-            "Boundary 2/Contact law": "normal compliance",
-            "Boundary 2/Compliance": 14,
-            "Boundary 2/Compliance exponent": 1.5,
-            "Boundary 2/Friction law": "coulomb",
-            "Boundary 2/Friction coefficient": 0.3,
+            **on_boundary(2, Role="contact", Contact_law="normal compliance"),
+            **on_boundary(2, Compliance=14, Compliance_exponent=1.5),
+            **on_boundary(2, Friction_law="coulomb", Friction_coefficient=0.3),
             "Boundary 3/Role": "traction",
             "Initial state/Equilibrate": "true",
             "Time/Phases": "1: 2",
@@ -383,12 +357,9 @@ class Notes(TestCase):
 
     PRESSED = {
         "Geometry/Arguments": "4, 2 : 0, 0 : 2, 1 : true",
-        "Boundary 0/Role": "free",
-        "Boundary 1/Role": "free",
-        "Boundary 2/Role": "contact",
-        "Boundary 2/Friction law": "none",
-        "Boundary 3/Role": "displacement",
-        "Boundary 3/Displacement": "0; -0.02*t",
+        **with_roles(free=[0, 1]),
+        **on_boundary(2, Role="contact", Friction_law="none"),
+        **on_boundary(3, Role="displacement", Displacement="0; -0.02*t"),
         "Time/Phases": "1: 4",
     }
 

@@ -10,6 +10,7 @@ every step, and displacements that differ by the motion.
 import numpy as np
 
 from harness import TestCase, as_prm, main, run
+from runs import of_law, on_boundary, with_roles
 
 SAME = (
     "stick_area",
@@ -80,9 +81,7 @@ class Relativity(TestCase):
 
     def test_conveyor(self):
         """Coulomb, the belt comes back: the hysteresis of both directions."""
-        moving = self.check(
-            "conveyor_2d", 3, self.TWO, self.two, {"contact": 2}
-        )
+        moving = self.check("conveyor_2d", 3, self.TWO, self.two, {"contact": 2})
         force = moving["friction_force_x"]
         # The belt drags the body to the right: lambda, the force on the belt,
         # points left first, and right when it returns.
@@ -116,9 +115,7 @@ class Relativity(TestCase):
         three = run("conveyor_2d", ranks=3)
         for name in SAME[2:] + ("friction_force_x", "point0_x"):
             scale = np.abs(one[name]).max()
-            self.assertClose(
-                three[name], one[name], absolute=1e-6 * scale, what=name
-            )
+            self.assertClose(three[name], one[name], absolute=1e-6 * scale, what=name)
 
     def test_plate_on_a_circle(self):
         moving = self.check(
@@ -132,9 +129,7 @@ class Relativity(TestCase):
         # turning: less than 60 degrees
         force = moving.vector("friction_force")[-1, :2]
         velocity = np.array([np.sin(1.5 * np.pi), np.cos(1.5 * np.pi)])
-        self.assertLess(
-            force @ velocity, -0.5 * np.linalg.norm(force)
-        )
+        self.assertLess(force @ velocity, -0.5 * np.linalg.norm(force))
 
     def test_plate_under_hanging_nodes(self):
         """Cells refined at the face: it has hanging nodes, on 1 and 3 ranks."""
@@ -142,8 +137,7 @@ class Relativity(TestCase):
             "Geometry/Arguments": "4, 4, 2 : 0, 0, 0 : 1, 1, 0.5 : true",
             "Geometry/Boundary ids": "if(z < 1e-6 && x < 0.5, 7, id)",
             "Geometry/Boundary refinements": "7: 1",
-            "Boundary 7/Role": "contact",
-            "Boundary 7/Friction law": "tresca",
+            **on_boundary(7, Role="contact", Friction_law="tresca"),
             "Boundary 7/Friction bound": "0.05*(1 + x)",
             "Boundary 7/Foundation motion":
                 "0.2*(1 - cos(pi*t)); 0.2*sin(pi*t); 0",
@@ -213,16 +207,10 @@ class Relativity(TestCase):
 # pieces meet in an edge, whose nodes slip over two foundations.
 WALL = {
     "Geometry/Arguments": "4, 4, 2 : 0, 0, 0 : 1, 1, 0.5 : true",
-    "Boundary 0/Role": "traction",
-    "Boundary 0/Traction": "0; 0.05*t; 0",
-    "Boundary 1/Role": "contact",
-    "Boundary 1/Friction law": "tresca",
-    "Boundary 1/Friction bound": 0.005,
-    "Boundary 4/Contact law": "unilateral",
-    "Boundary 4/Friction law": "coulomb",
-    "Boundary 4/Friction bound": "",
-    "Boundary 4/Friction coefficient": 0.3,
-    "Boundary 4/Foundation motion": "0; 0.2*t; 0",
+    **on_boundary(0, Role="traction", Traction="0; 0.05*t; 0"),
+    **on_boundary(1, Role="contact", Friction_law="tresca", Friction_bound=0.005),
+    **on_boundary(4, Contact_law="unilateral", Friction_law="coulomb", Friction_bound=""),
+    **on_boundary(4, Friction_coefficient=0.3, Foundation_motion="0; 0.2*t; 0"),
     "Boundary 4/Foundation displacement": "-0.01*t",
     "Time/Phases": "1: 4",
     "Output/Points": "1, 0, 0; 1, 0.5, 0",
@@ -256,17 +244,14 @@ class Neighbors(TestCase):
                 "Geometry/Boundary ids": "if(z < 1e-6 && x < 0.5, 7, id)",
                 "Geometry/Boundary refinements": "7: 1",
                 "Geometry/Arguments": WALL["Geometry/Arguments"],
-                "Boundary 7/Role": "contact",
-                "Boundary 7/Friction law": "tresca",
+                **on_boundary(7, Role="contact", Friction_law="tresca"),
                 "Boundary 7/Friction bound": "0.05*(1 + x)",
                 "Boundary 7/Foundation motion": "{0}; {1}; 0",
             },
             {
                 **WALL,
-                "Boundary 4/Contact law": "bilateral",
-                "Boundary 4/Friction law": "tresca",
-                "Boundary 4/Friction bound": 0.03,
-                "Boundary 4/Friction coefficient": "",
+                **on_boundary(4, Contact_law="bilateral", Friction_law="tresca"),
+                **on_boundary(4, Friction_bound=0.03, Friction_coefficient=""),
                 "Boundary 4/Foundation motion": "0; 0.2*sin(pi*t); 0",
                 "Boundary 1/Foundation motion": "0; {1}; 0",
             },
@@ -289,13 +274,11 @@ class Glued(TestCase):
     """No slip whatever the force."""
 
     GLUED = {
-        "Boundary 2/Friction law": "glued",
-        "Boundary 2/Foundation motion": "",
+        **on_boundary(2, Friction_law="glued", Foundation_motion=""),
         "Output/Points": "0, 0.5; 2, 0.5",
     }
     PUSH = {
-        "Boundary 0/Role": "traction",
-        "Boundary 0/Traction": "0.3*t; 0.1*t",
+        **on_boundary(0, Role="traction", Traction="0.3*t; 0.1*t"),
         "Time/Phases": "1: 8",
     }
 
@@ -309,8 +292,7 @@ class Glued(TestCase):
     def test_at_rest_it_is_clamped(self):
         glued = run("conveyor_2d", {**self.GLUED, **self.PUSH})
         clamped = run(
-            "conveyor_2d",
-            {**self.GLUED, **self.PUSH, "Boundary 2/Role": "clamped"},
+            "conveyor_2d", {**self.GLUED, **self.PUSH, "Boundary 2/Role": "clamped"}
         )
         self.same(glued, clamped)
         # its force is a reaction, and nothing of friction is there
@@ -329,8 +311,7 @@ class Glued(TestCase):
             {
                 **self.GLUED,
                 **self.PUSH,
-                "Boundary 2/Friction law": "tresca",
-                "Boundary 2/Friction bound": 1e6,
+                **on_boundary(2, Friction_law="tresca", Friction_bound=1e6),
             },
         )
         self.same(glued, tresca)
@@ -340,17 +321,13 @@ class Glued(TestCase):
 
     def test_it_goes_with_the_foundation(self):
         """In both directions, oblique, as if the displacement were given."""
-        overrides = {
-            "Geometry/Rotation angle": 30,
-            "Output/Points": "0, 0; 1, 1",
-        }
+        overrides = {"Geometry/Rotation angle": 30, "Output/Points": "0, 0; 1, 1"}
         c, s = np.cos(np.pi / 6), np.sin(np.pi / 6)
         glued = run(
             "conveyor_2d",
             {
                 **overrides,
-                "Boundary 2/Friction law": "glued",
-                "Boundary 2/Foundation displacement": "-0.1*t",
+                **on_boundary(2, Friction_law="glued", Foundation_displacement="-0.1*t"),
                 "Boundary 2/Foundation motion": f"{c:.17g}*0.2*t; {s:.17g}*0.2*t",
             },
         )
@@ -368,19 +345,15 @@ class Glued(TestCase):
         for name in ("stored_energy", "max_von_mises", "external_work",
                      "reaction_2_x", "reaction_2_y", "point1_x"):
             scale = np.abs(given[name]).max()
-            self.assertClose(
-                glued[name], given[name], absolute=1e-8 * scale, what=name
-            )
+            self.assertClose(glued[name], given[name], absolute=1e-8 * scale, what=name)
 
     def test_it_holds_a_body(self):
         """No other condition is needed, unlike with friction."""
         result = run(
             "conveyor_3d",
             {
-                "Boundary 4/Friction law": "glued",
-                "Boundary 4/Foundation motion": "",
-                "Boundary 5/Role": "traction",
-                "Boundary 5/Traction": "0.1*t; 0; -0.1*t",
+                **on_boundary(4, Friction_law="glued", Foundation_motion=""),
+                **on_boundary(5, Role="traction", Traction="0.1*t; 0; -0.1*t"),
             },
         )
         self.assertClose(result["reaction_4_x"], -0.1 * result["t"], absolute=1e-9)
@@ -404,9 +377,7 @@ class Passenger(TestCase):
 
     def test_wall_without_friction_does_not_hold_the_corner(self):
         for arguments in ("8, 8", "16, 16"):
-            self.check(
-                **{"Geometry/Arguments": f"{arguments} : 0, 0 : 1, 1 : true"}
-            )
+            self.check(**{"Geometry/Arguments": f"{arguments} : 0, 0 : 1, 1 : true"})
 
     def test_wall_without_friction_on_two_ranks(self):
         self.check(ranks=2)
@@ -416,10 +387,8 @@ class Passenger(TestCase):
         self.check(
             **{
                 "Geometry/Boundary ids": "if(y < 1e-6 && x > 0.5, 7, id)",
-                "Boundary 7/Role": "contact",
-                "Boundary 7/Friction law": "coulomb",
-                "Boundary 7/Friction coefficient": 0,
-                "Boundary 7/Normal stress": -0.01,
+                **on_boundary(7, Role="contact", Friction_law="coulomb"),
+                **on_boundary(7, Friction_coefficient=0, Normal_stress=-0.01),
             }
         )
 
@@ -449,8 +418,7 @@ class Passenger(TestCase):
             "passenger_2d",
             {
                 "Boundary 1/Role": "free",
-                "Boundary 2/Friction law": "tresca",
-                "Boundary 2/Friction bound": 0.1,
+                **on_boundary(2, Friction_law="tresca", Friction_bound=0.1),
             },
         )
         self.assertClose(result["max_von_mises"], 0, absolute=1e-12)
@@ -479,8 +447,7 @@ class Passenger(TestCase):
                 "Material/Law": "elastic",
                 "Initial state/Stress": "0; 0; 0; 0.05",
                 "Boundary 0/Traction": "0; -0.05",
-                "Boundary 1/Role": "traction",
-                "Boundary 1/Traction": "0; 0.05",
+                **on_boundary(1, Role="traction", Traction="0; 0.05"),
                 "Time/Phases": "1: 4",
             },
         )
@@ -552,10 +519,8 @@ class Held(TestCase):
     TEXT = as_prm(
         {
             "Boundary 0/Role": "clamped",
-            "Boundary 1/Role": "displacement",
-            "Boundary 1/Displacement": "0.01*t; FREE",
-            "Boundary 2/Role": "contact",
-            "Boundary 2/Friction law": "tresca",
+            **on_boundary(1, Role="displacement", Displacement="0.01*t; FREE"),
+            **on_boundary(2, Role="contact", Friction_law="tresca"),
             "Boundary 2/Friction bound": "1e-3",
             "Boundary 3/Role": "free",
             "Time/Phases": "1: 4",
@@ -567,8 +532,7 @@ class Held(TestCase):
     SPACE = {
         "Dimension": 3,
         "Geometry/Arguments": "1, 1, 1 : 0, 0, 0 : 1, 1, 1 : true",
-        "Boundary 4/Role": "free",
-        "Boundary 5/Role": "free",
+        **with_roles(free=[4, 5]),
     }
 
     def held(self, overrides, dim=2, **options):
@@ -590,8 +554,7 @@ class Held(TestCase):
                     2,
                     {
                         **self.HELD,
-                        "Material/Law": "parsed",
-                        "Material/parsed/Strain rate": "0.1*sigma_eq*exp(-p)",
+                        **of_law("parsed", Strain_rate="0.1*sigma_eq*exp(-p)"),
                         "Time/Scheme": "backward Euler",
                     },
                 ),
@@ -624,9 +587,7 @@ class Tension(TestCase):
     """Bilateral contact does not open; the user is told where it pulls."""
 
     SCENE = {
-        "Boundary 2/Friction law": "tresca",
-        "Boundary 2/Friction bound": 0.1,
-        "Boundary 2/Foundation motion": "",
+        **on_boundary(2, Friction_law="tresca", Friction_bound=0.1, Foundation_motion=""),
         "Time/Phases": "1: 4",
     }
 
@@ -674,10 +635,8 @@ class Tension(TestCase):
             "Geometry/Arguments": "0.6 : 0.4 : 1",
             "Geometry/Global refinements": 1,
             "Geometry/Boundary refinements": "0: 1",
-            "Boundary 0/Role": "free",
-            "Boundary 1/Role": "clamped",
-            "Boundary 2/Role": "contact",
-            "Boundary 2/Friction law": "none",
+            **with_roles(free=[0], clamped=[1]),
+            **on_boundary(2, Role="contact", Friction_law="none"),
             "Boundary 2/Foundation displacement": "0.0002*min(8*t, 1)",
             "Time/Phases": "0.5: 4",
             "Mesh refinement/Strategy": "residual",
@@ -700,16 +659,11 @@ class Pressures(TestCase):
     """S may change its sign: the bound is mu |S|, the load S itself."""
 
     def test_sign_of_the_normal_stress(self):
-        scene = {
-            "Boundary 2/Normal stress": "-0.2*sin(pi*t)",
-            "Time/Phases": "2: 16",
-        }
+        scene = {"Boundary 2/Normal stress": "-0.2*sin(pi*t)", "Time/Phases": "2: 16"}
         result = run("conveyor_2d", scene)
         self.check_identities(result)
         t = result["t"]
-        self.assertClose(
-            result["load_y"], 2 * 0.2 * np.sin(np.pi * t), absolute=1e-12
-        )
+        self.assertClose(result["load_y"], 2 * 0.2 * np.sin(np.pi * t), absolute=1e-12)
         bound = 2 * 0.3 * 0.2 * abs(np.sin(np.pi * t))
         self.assertTrue(np.all(abs(result["friction_force_x"]) <= bound + 1e-12))
         # at t = 1 and 2 the bound vanishes, and with it the force

@@ -15,6 +15,7 @@ import tempfile
 import numpy as np
 
 from harness import COUPLED, SOURCE, TestCase, main, run, scene_file
+from runs import on_boundary
 
 
 class SaltPillar(TestCase):
@@ -28,8 +29,7 @@ class SaltPillar(TestCase):
     @classmethod
     def setUpClass(cls):
         cls.result = run(
-            "salt_pillar_2d",
-            {"Geometry/Arguments": "48, 24 : 0, 0 : 6, 3 : true"},
+            "salt_pillar_2d", {"Geometry/Arguments": "48, 24 : 0, 0 : 6, 3 : true"}
         )
         # the same without friction: uniaxial stress in plane strain, so one
         # cell would do
@@ -152,8 +152,7 @@ class SaltPillarUnderRock(TestCase):
             self.check_identities(result, tolerance=COUPLED)
             self.assertClose(result["contact_force_y"][driven], 72e6, relative=1e-6)
         for column, now, then in (
-            ("max_pressure", 1.2, 1.02),
-            ("friction_dissipation", 5, 1.4),
+            ("max_pressure", 1.2, 1.02), ("friction_dissipation", 5, 1.4)
         ):
             ratio = elastic[column] / np.maximum(rigid[column], 1e-300)
             self.assertGreater(ratio[driven], now)
@@ -365,9 +364,7 @@ class BrakePad(TestCase):
         r = self.result
         heat = r["viscous_dissipation"] + r["friction_dissipation"]
         self.assertClose(
-            r["external_work"][-1],
-            (heat + r["stored_energy"])[-1],
-            relative=1.5e-3,
+            r["external_work"][-1], (heat + r["stored_energy"])[-1], relative=1.5e-3
         )
         # and each is a part to be seen
         self.assertGreater(r["friction_dissipation"][-1] / heat[-1], 0.5)
@@ -818,10 +815,8 @@ class ShearedSlab(TestCase):
             "sheared_slab_2d",
             {
                 "Geometry/Arguments": "12, 4 : 0, 0 : 0.12, 0.02 : true",
-                "Boundary 0/Role": "displacement",
-                "Boundary 0/Displacement": "free; 0",
-                "Boundary 1/Role": "displacement",
-                "Boundary 1/Displacement": "free; 0",
+                **on_boundary(0, Role="displacement", Displacement="free; 0"),
+                **on_boundary(1, Role="displacement", Displacement="free; 0"),
                 "Boundary 2/Friction bound": "100e3",
                 "Output/Fields every": 0,
             },
@@ -887,8 +882,7 @@ class TreadBlock(TestCase):
             "tread_block_3d",
             {
                 "Geometry/Arguments": self.CELLS,
-                "Boundary 4/Friction law": "tresca",
-                "Boundary 4/Friction bound": "1e9",
+                **on_boundary(4, Friction_law="tresca", Friction_bound="1e9"),
                 "Boundary 4/Foundation motion": "5e-4*min(t/1e-6, 1); 0; 0",
                 "Time/Phases": f"1e-6: 1, {end}: {n}",
                 "Output/Fields every": 0,
@@ -1031,9 +1025,7 @@ class TunnelLining(TestCase):
         )
         L = -p * b**2 / (b**2 - a**2)
         cos, sin = np.cos(2 * t), np.sin(2 * t)
-        hoop = (
-            L * (1 + a**2 / r**2) + (2 * A + 12 * B * r**2 + 6 * C / r**4) * cos
-        )
+        hoop = (L * (1 + a**2 / r**2) + (2 * A + 12 * B * r**2 + 6 * C / r**4) * cos)
         radial = (
             (1 - 2 * nu) * L * r
             + L * a**2 / r
@@ -1041,10 +1033,7 @@ class TunnelLining(TestCase):
             * (-2 * A * r - 4 * nu * B * r**3 + 2 * C / r**3 + 4 * (1 - nu) * D / r)
         )
         tangential = sin * (
-            2 * A * r
-            + (6 - 4 * nu) * B * r**3
-            + 2 * C / r**3
-            - (2 - 4 * nu) * D / r
+            2 * A * r + (6 - 4 * nu) * B * r**3 + 2 * C / r**3 - (2 - 4 * nu) * D / r
         )
         u = np.stack(
             [

@@ -463,8 +463,7 @@ class Effects(TestCase):
         errors = (
             np.abs(finer - rougher[column]).max() / self.size(rougher, column)
             for finer, rougher in (
-                (of_scene[column][::2], longer),
-                (longer[column], coarser),
+                (of_scene[column][::2], longer), (longer[column], coarser)
             )
         )
         self.assertClose(effect["changes"][column]["error"], sum(errors), 1e-9, 1e-12)
@@ -578,8 +577,7 @@ class Effects(TestCase):
                 never, effect="other", overrides=["Boundary 2/Friction bound=no number"]
             )
             for variant, least, failure in (
-                (never, 0.0, "not computed: it takes more"),
-                (wrong, 10.0, "no number"),
+                (never, 0.0, "not computed: it takes more"), (wrong, 10.0, "no number")
             ):
                 with unittest.mock.patch.multiple(
                     effects, MOST_TIMES=1e-3, LEAST_LIMIT=least

@@ -4,7 +4,9 @@
 import numpy as np
 
 from harness import TestCase, main, run
-from runs import EVERY_STEP, Job, entries, manufactured, without_wall_times
+from runs import (
+    EVERY_STEP, Job, entries, manufactured, of_law, on_boundary, without_wall_times,
+)
 from shear_layer import MU, THETA, tau
 
 # of a plane scene on one mesh, with cell means
@@ -39,14 +41,10 @@ class SingularCreep(TestCase):
         "Geometry/Generator": "hyper_L",
         "Geometry/Arguments": "-1 : 1 : false",
         "Geometry/Boundary ids": "if(x == -1, 0, if(y == -1, 1, if(y == 1, 3, 2)))",
-        "Material/Law": "norton",
-        "Material/norton/Exponent": 3,
-        "Material/norton/Rate factor": 1e4,
-        "Material/norton/Stress cap": 1,
+        **of_law("norton", Exponent=3, Rate_factor=1e4, Stress_cap=1),
         **entries((0, 2), {"Role": "free"}),
         "Boundary 1/Role": "clamped",
-        "Boundary 3/Role": "traction",
-        "Boundary 3/Traction": "0.003; -0.003",
+        **on_boundary(3, Role="traction", Traction="0.003; -0.003"),
         "Initial state/Equilibrate": "true",
         "Time/Scheme": "backward Euler",
         "Time/Phases": "1: 4, 10: 4",
@@ -332,8 +330,7 @@ class Estimate(TestCase):
             ("3/Displacement", "0.1*({} + t); 0", "0.1*t; 0", held),
         ):
             for value, least, most in (
-                (swinging.format("sin(16*pi*t)"), 0.1, 2),
-                (rising, 0, 0),
+                (swinging.format("sin(16*pi*t)"), 0.1, 2), (rising, 0, 0)
             ):
                 result = run(
                     "slab",
@@ -357,8 +354,7 @@ class Estimate(TestCase):
                 **SLAB,
                 "Material/Law": "elastic",
                 "Boundary 0/Traction": "0; 0",
-                "Boundary 2/Contact law": "unilateral",
-                "Boundary 2/Gap": "0.1",
+                **on_boundary(2, Contact_law="unilateral", Gap="0.1"),
                 "Boundary 2/Friction bound": "0.03*abs(sin(7*t))",
             },
         )
@@ -715,8 +711,7 @@ class Restart(TestCase):
                     again.forget_after(n)
                     result = again.run("--restart", ranks=ranks)
                     self.assertEqual(
-                        without_wall_times(result.directory / "statistics.csv"),
-                        rows,
+                        without_wall_times(result.directory / "statistics.csv"), rows
                     )
                     self.assertEqual(without_clocks(result.info), record)
 
@@ -736,9 +731,7 @@ class Restart(TestCase):
             job.run()
             job.forget_after(5)
             refusal = job.run(
-                "--restart",
-                code=1,
-                overrides={"Error control__Error bar": "false"},
+                "--restart", code=1, overrides={"Error control__Error bar": "false"}
             )
             self.assertIn("'Error control/Error bar'", refusal.stderr)
 

@@ -8,11 +8,9 @@ import tempfile
 from pathlib import Path
 
 from harness import MPIRUN, PROGRAM, TestCase, main, run, run_program, scene_file
+from runs import elastic_moduli, on_boundary, with_roles
 
-SMALL = {
-    "Geometry/Arguments": "4, 2 : 0, 0 : 2, 1 : true",
-    "Time/Phases": "1: 4, 2: 4",
-}
+SMALL = {"Geometry/Arguments": "4, 2 : 0, 0 : 2, 1 : true", "Time/Phases": "1: 4, 2: 4"}
 
 
 class Refused(TestCase):
@@ -57,25 +55,121 @@ class Refused(TestCase):
             left = {file.name for file in Path(work).iterdir()} - {"stdout", "stderr"}
             self.assertEqual(left, {"scene.prm"})
 
+    # Entries of the slab, and words of the sentence.
+    ENTRIES = (
+        (
+            {"Output/Additional fields": "total strain, stain"},
+            "'Output/Additional fields' is 'total strain, stain'; it must be names "
+            "separated by commas, each one of total strain, irreversible strain, ",
+        ),
+        (
+            {"Material/Law": "bingham"},
+            "Material/Law' is 'bingham'",
+            "one of elastic, maxwell",
+        ),
+        ({"Material/Law": "Maxwel"}, "did you mean 'maxwell'"),
+        ({"Material/Poisson's ratio": "soft"}, "Poisson", "soft"),
+        (
+            {"Solver/Contact tolerance": 1},
+            "'Solver/Contact tolerance' is '1'; it must be a number from "
+            r"0 to 0\.1\.$",
+        ),
+        ({"Dimension": 4}, "'Dimension' is '4'; it must be a whole number from 2 to 3"),
+        (
+            {"Geometry/Arguments": "4, 2"},
+            "subdivided_hyper_rectangle' refuses the arguments '4, 2'",
+        ),
+        ({"Boundary 7/Role": "clamped"}, "boundary 7"),
+        ({"Boundary 3/Role": "glue"}, "Role", "glue"),
+        ({"Boundary 0/Traction": "1; 2; 3"}, "Traction"),
+        ({"Geometry/Generator": "hyper_doughnut"}, "hyper_doughnut"),
+        ({"Output/Points": "5, 5"}, "Points", "5"),
+        ({"Material/Poisson's ratio": 0.5}, "Poisson", "0.5"),
+        ({"Material/Young's modulus": -1}, "Young"),
+        ({"Material/Young's modulus": "x - 1"}, "Young"),
+        ({"Material/maxwell/Viscosity": -0.5}, "Viscosity"),
+        ({"Boundary 2/Friction bound": -0.1}, "Friction bound"),
+        ({"Boundary 2/Friction bound": "0.5 - t"}, "Friction bound"),
+        ({"Boundary 3/Role": "free"}, "rigid"),
+        ({"Initial state/Stress": "0.1; 0; 0; 0"}, "compatib|equilibr"),
+        (
+            {
+                "Initial state/Stress": "0; 0; 0; 0.09",
+                "Boundary 0/Traction": "0; -0.09",
+                **on_boundary(1, Role="traction", Traction="0; 0.09"),
+            },
+            "compatib|equilibr",
+        ),
+        ({"Time/Phases": "1: 4, 0.5: 4"}, "Phases"),
+        (
+            {"Boundary 2/Friction bound": "if(x=1, 0.1, 0.2)"},
+            r"Friction bound' has a single '='",
+        ),
+        ({"Boundary 2/Friction bound": "0.1; 0.2"}, "more than one component"),
+        ({"Boundary 0/Traction": ""}, "'Boundary 0/Traction' is missing"),
+        ({"Output/Points": "nan, 0"}, "Points.*2 finite numbers"),
+        (
+            {"Geometry/Rotation angle": 30, **with_roles(free=[0], symmetry=[3])},
+            r"translation along \(0\.866, 0\.5\)",
+        ),
+        ({"Boundary 0/Traction": "sqrt(-1 - t); 0"}, "Traction"),
+        ({"Loads/Body force": "q*t; 0"}, "Body force"),
+    )
+
+    def test_entries(self):
+        for entries, *words in self.ENTRIES:
+            with self.subTest(entries):
+                self.refused(*words, **entries)
+
+    # Texts in which `slab' is included, and the sentence.
+    TEXTS = (
+        (
+            "include SLAB\nsubsection Material\n  set Viscosity = 1\nend\n",
+            r"line 3: .*'Viscosity' belongs to 'Material/maxwell'",
+        ),
+        (
+            "include SLAB\n\nsubsection Lods\nend\n",
+            r"scene\.prm', line 3: there is no subsection 'Lods'; "
+            r"did you mean 'Loads'\?$",
+        ),
+        (
+            "subsection Boundary 3\n  set Role = free\nend\n"
+            "subsection Boundary 3\n  set Role = clamped\nend\n",
+            r"'Boundary 3/Role' is set twice in '.*scene\.prm', in lines 2 and 5",
+        ),
+        (
+            "include SLAB\nsubsection Time\n  set Phases = 1: 1\n",
+            r"scene\.prm', line 2: the subsection 'Time' has no `end'\.$",
+        ),
+        ("set Dimension 2", "line 1: 'set Dimension 2' has no `='"),
+        ("solid cube\n", "line 1: 'solid cube' is no statement"),
+        ("\ninclude common.prm", r"line 2: the included file '.*common\.prm' does"),
+        (
+            "include SLAB\nsubsection Geometry\n  set File = part.msh\nend\n",
+            r"line 3: 'Geometry/File' is 'part\.msh', but there is no such file",
+        ),
+        (
+            "subsection Boundary left\nend\n",
+            "'left' in the subsection 'Boundary left' is no id",
+        ),
+        (
+            "include SLAB\nsubsection Material 1\n  set Law = elastic\nend\n",
+            "'Material/.*' cannot be set beside 'Material 1'",
+        ),
+        (f"include {'x' * 5000}\n", r"x{100}\.\.\.' does not exist"),
+    )
+
+    def test_texts(self):
+        for text, *words in self.TEXTS:
+            with self.subTest(text):
+                self.refused_text(text, *words)
+
     def test_unknown_entry(self):
         """File, line, and the nearest name."""
         self.refused_text(
             "include SLAB\nsubsection Material\n  set Youngs modulus = 1\nend\n",
             r"scene\.prm', line 3: 'Material' has no entry 'Youngs modulus'; "
             r"did you mean 'Young's modulus'\?$",
-        )
-
-    def test_entry_of_another_subsection(self):
-        self.refused_text(
-            "include SLAB\nsubsection Material\n  set Viscosity = 1\nend\n",
-            r"line 3: .*'Viscosity' belongs to 'Material/maxwell'",
-        )
-
-    def test_unknown_subsection(self):
-        self.refused_text(
-            "include SLAB\n\nsubsection Lods\nend\n",
-            r"scene\.prm', line 3: there is no subsection 'Lods'; "
-            r"did you mean 'Loads'\?$",
         )
 
     def test_unknown_name_in_an_expression(self):
@@ -107,78 +201,6 @@ class Refused(TestCase):
             r"line 2: .* it is `set Traction' within `subsection Boundary 0'\.$",
         )
 
-    def test_names_of_fields(self):
-        self.refused(
-            "'Output/Additional fields' is 'total strain, stain'; it must be names "
-            "separated by commas, each one of total strain, irreversible strain, ",
-            **{"Output/Additional fields": "total strain, stain"},
-        )
-
-    def test_unknown_law(self):
-        self.refused("Material/Law' is 'bingham'", "one of elastic, maxwell",
-                     **{"Material/Law": "bingham"})
-
-    def test_misspelt_law(self):
-        self.refused("did you mean 'maxwell'", **{"Material/Law": "Maxwel"})
-
-    def test_not_a_number(self):
-        self.refused("Poisson", "soft", **{"Material/Poisson's ratio": "soft"})
-
-    def test_value_out_of_range(self):
-        self.refused(
-            "'Solver/Contact tolerance' is '1'; it must be a number from "
-            r"0 to 0\.1\.$",
-            **{"Solver/Contact tolerance": 1},
-        )
-
-    def test_dimension_four(self):
-        self.refused(
-            "'Dimension' is '4'; it must be a whole number from 2 to 3",
-            **{"Dimension": 4},
-        )
-
-    def test_the_same_boundary_twice(self):
-        self.refused_text(
-            "subsection Boundary 3\n  set Role = free\nend\n"
-            "subsection Boundary 3\n  set Role = clamped\nend\n",
-            r"'Boundary 3/Role' is set twice in '.*scene\.prm', in lines 2 and 5",
-        )
-
-    def test_subsection_without_end(self):
-        self.refused_text(
-            "include SLAB\nsubsection Time\n  set Phases = 1: 1\n",
-            r"scene\.prm', line 2: the subsection 'Time' has no `end'\.$",
-        )
-
-    def test_forgotten_equals_sign(self):
-        self.refused_text("set Dimension 2", "line 1: 'set Dimension 2' has no `='")
-
-    def test_not_a_parameter_file(self):
-        self.refused_text("solid cube\n", "line 1: 'solid cube' is no statement")
-
-    def test_missing_included_file(self):
-        self.refused_text(
-            "\ninclude common.prm", r"line 2: the included file '.*common\.prm' does"
-        )
-
-    def test_missing_mesh_file(self):
-        self.refused_text(
-            "include SLAB\nsubsection Geometry\n  set File = part.msh\nend\n",
-            r"line 3: 'Geometry/File' is 'part\.msh', but there is no such file",
-        )
-
-    def test_boundary_without_a_number(self):
-        self.refused_text(
-            "subsection Boundary left\nend\n",
-            "'left' in the subsection 'Boundary left' is no id",
-        )
-
-    def test_one_material_and_numbered_ones(self):
-        self.refused_text(
-            "include SLAB\nsubsection Material 1\n  set Law = elastic\nend\n",
-            "'Material/.*' cannot be set beside 'Material 1'",
-        )
-
     def test_wrong_assignment_on_the_command_line(self):
         for argument, name in (
             ("Time/Phase=1: 2", "'Time' has no entry 'Phase'; did you mean 'Phases'"),
@@ -201,12 +223,6 @@ class Refused(TestCase):
             "include SLAB\n",
             "The log file 'nowhere/log' cannot be written",
             more=["--log", "nowhere/log"],
-        )
-
-    def test_wrong_generator_arguments(self):
-        self.refused(
-            "subdivided_hyper_rectangle' refuses the arguments '4, 2'",
-            **{"Geometry/Arguments": "4, 2"},
         )
 
     # Boundary roles
@@ -233,15 +249,6 @@ class Refused(TestCase):
         """
         self.refused("boundary", "2", "role", scene="roles", text=text)
 
-    def test_boundary_not_in_the_mesh(self):
-        self.refused("boundary 7", **{"Boundary 7/Role": "clamped"})
-
-    def test_unknown_role(self):
-        self.refused("Role", "glue", **{"Boundary 3/Role": "glue"})
-
-    def test_wrong_number_of_components(self):
-        self.refused("Traction", **{"Boundary 0/Traction": "1; 2; 3"})
-
     def test_nonsense_in_entries_that_the_role_does_not_use(self):
         for entry, value, name in (
             ("Boundary 1/Traction", "1; 2; 3", "needs 2 components"),
@@ -256,9 +263,7 @@ class Refused(TestCase):
     def test_entries_that_the_role_does_not_use_are_named(self):
         """Variants of a scene keep what they do not need; the user is told."""
         leftovers = {
-            "Boundary 1/Role": "free",
-            "Boundary 1/Traction": "1; 1",
-            "Boundary 1/Friction law": "tresca",
+            **on_boundary(1, Role="free", Traction="1; 1", Friction_law="tresca"),
             "Boundary 2/Normal stress": -1,
             "Time/Phases": "0.1: 1",
         }
@@ -284,8 +289,7 @@ class Refused(TestCase):
             **{
                 "Geometry/Generator": "hyper_shell",
                 "Geometry/Arguments": "0, 0 : 0.5 : 1 : 12 : true",
-                "Boundary 0/Role": "contact",
-                "Boundary 0/Friction law": "tresca",
+                **on_boundary(0, Role="contact", Friction_law="tresca"),
                 "Boundary 0/Friction bound": 0.1,
                 "Boundary 1/Role": "clamped",
             },
@@ -293,33 +297,15 @@ class Refused(TestCase):
             text="set Dimension = 2\n",
         )
 
-    def test_unknown_generator(self):
-        self.refused("hyper_doughnut", **{"Geometry/Generator": "hyper_doughnut"})
-
-    def test_point_outside_the_body(self):
-        self.refused("Points", "5", **{"Output/Points": "5, 5"})
-
     # Physics
-
-    def test_incompressible(self):
-        self.refused("Poisson", "0.5", **{"Material/Poisson's ratio": 0.5})
-
-    def test_negative_stiffness(self):
-        self.refused("Young", **{"Material/Young's modulus": -1})
-
-    def test_stiffness_that_vanishes_somewhere(self):
-        self.refused("Young", **{"Material/Young's modulus": "x - 1"})
 
     def test_stiffness_beside_which_forces_are_rounding(self):
         scene = {
             "Geometry/Arguments": "8, 8 : 0, 0 : 1, 1 : true",
             "Geometry/Material ids": "if(y < 0.5, 1, 2)",
             "Material 1/Young's modulus": 1,
-            "Boundary 0/Role": "free",
-            "Boundary 1/Role": "free",
-            "Boundary 2/Role": "clamped",
-            "Boundary 3/Role": "traction",
-            "Boundary 3/Traction": "0; -0.05*t",
+            **with_roles(free=[0, 1], clamped=[2]),
+            **on_boundary(3, Role="traction", Traction="0; -0.05*t"),
             "Time/Phases": "1: 2",
         }
         softer = {**scene, "Material 2/Young's modulus": 1e8}
@@ -333,39 +319,23 @@ class Refused(TestCase):
         which a force along the lower one would have to press it against."""
         sections = {
             "Geometry/Arguments": "2, 2 : 0, 0 : 1, 0.5 : true",
-            "Material/Young's modulus": 1.338,
-            "Material/Poisson's ratio": 0.499,
+            **elastic_moduli(1.338, 0.499),
             "Material/Volumetric integration": "full",
-            "Boundary 0/Role": "free",
-            "Boundary 1/Role": "traction",
+            **with_roles(free=[0], traction=[1]),
             "Boundary 1/Pressure": "-0.02084*sqrt(1 + y*y)*0.5*(1 - cos(4*pi*t))",
-            "Boundary 2/Role": "contact",
-            "Boundary 2/Contact law": "unilateral",
-            "Boundary 2/Friction law": "coulomb",
-            "Boundary 2/Friction coefficient": 1,
+            **on_boundary(2, Role="contact", Contact_law="unilateral"),
+            **on_boundary(2, Friction_law="coulomb", Friction_coefficient=1),
             "Boundary 2/Foundation displacement": "0.002759*t",
             "Boundary 2/Foundation motion":
                 "0.006722*if(x > 0.5, 0.2, 1)*(1 - exp(-5*t)); -0.09702*abs(sin(7*t))",
-            "Boundary 3/Role": "contact",
-            "Boundary 3/Contact law": "normal compliance",
-            "Boundary 3/Compliance": 9.244,
-            "Boundary 3/Friction law": "tresca",
-            "Boundary 3/Friction bound": "0.00109*(y < 0.3)",
-            "Boundary 3/Gap": 52.68,
+            **on_boundary(3, Role="contact", Contact_law="normal compliance"),
+            **on_boundary(3, Compliance=9.244, Friction_law="tresca"),
+            **on_boundary(3, Friction_bound="0.00109*(y < 0.3)", Gap=52.68),
             "Error control/Error bar": "false",
             "Solver/Contact tolerance": 1e-3,
             "Time/Phases": "1: 12",
         }
         self.refused("times the size of the body", scene="pulled", text="", **sections)
-
-    def test_negative_viscosity(self):
-        self.refused("Viscosity", **{"Material/maxwell/Viscosity": -0.5})
-
-    def test_negative_friction_bound(self):
-        self.refused("Friction bound", **{"Boundary 2/Friction bound": -0.1})
-
-    def test_friction_bound_that_turns_negative(self):
-        self.refused("Friction bound", **{"Boundary 2/Friction bound": "0.5 - t"})
 
     def test_negative_friction_coefficient(self):
         self.refused(
@@ -374,17 +344,13 @@ class Refused(TestCase):
             **{"Boundary 2/Friction coefficient": -0.4},
         )
 
-    def test_body_free_to_move(self):
-        self.refused("rigid", **{"Boundary 3/Role": "free"})
-
     def test_friction_does_not_hold_a_body(self):
         """Given normal stress: nothing but friction holds the slab."""
         self.refused(
             "rigid",
             **{
                 "Boundary 3/Role": "free",
-                "Boundary 2/Friction law": "coulomb",
-                "Boundary 2/Friction coefficient": 0.3,
+                **on_boundary(2, Friction_law="coulomb", Friction_coefficient=0.3),
                 "Boundary 2/Normal stress": "-t",
             },
         )
@@ -396,8 +362,7 @@ class Refused(TestCase):
             "rigid",
             **{
                 "Boundary 3/Role": "free",
-                "Boundary 1/Role": "displacement",
-                "Boundary 1/Displacement": "free; 0",
+                **on_boundary(1, Role="displacement", Displacement="free; 0"),
                 "Boundary 2/Role": "free",
             },
         )
@@ -408,10 +373,8 @@ class Refused(TestCase):
             "Geometry/Arguments": "4, 2 : 0, 0 : 1, 1e-6 : true",
             "Material/Poisson's ratio": 0,
             "Boundary 0/Role": "clamped",
-            "Boundary 1/Role": "traction",
-            "Boundary 1/Traction": "0.01*t; 0",
-            "Boundary 2/Role": "free",
-            "Boundary 3/Role": "free",
+            **on_boundary(1, Role="traction", Traction="0.01*t; 0"),
+            **with_roles(free=[2, 3]),
             "Time/Phases": "1: 1",
         }
         result = run("sheet", sheet, text="")
@@ -431,11 +394,6 @@ class Refused(TestCase):
         )
         self.refused("largest at .* inside of the body", **{"Loads/Body force": "1; 0"})
 
-    def test_incompatible_initial_stress(self):
-        self.refused(
-            "compatib|equilibr", **{"Initial state/Stress": "0.1; 0; 0; 0"}
-        )
-
     def test_compatible_initial_stress_is_accepted(self):
         """The counterpart: friction may carry a shear below its bound, here
         0.05 of 0.08, balanced by tractions on the sides; this is no error."""
@@ -445,23 +403,11 @@ class Refused(TestCase):
                 **SMALL,
                 "Initial state/Stress": "0; 0; 0; 0.05",
                 "Boundary 0/Traction": "0; -0.05",
-                "Boundary 1/Role": "traction",
-                "Boundary 1/Traction": "0; 0.05",
+                **on_boundary(1, Role="traction", Traction="0; 0.05"),
                 "Time/Phases": "0.1: 1",
             },
         )
         self.assertClose(result["friction_force_x"][0], 0.1, absolute=1e-9)
-
-    def test_initial_shear_beyond_the_bound(self):
-        self.refused(
-            "compatib|equilibr",
-            **{
-                "Initial state/Stress": "0; 0; 0; 0.09",
-                "Boundary 0/Traction": "0; -0.09",
-                "Boundary 1/Role": "traction",
-                "Boundary 1/Traction": "0; 0.09",
-            },
-        )
 
     def test_step_beyond_the_stability_limit(self):
         """2/r = 2.6; the message names the limit."""
@@ -470,20 +416,11 @@ class Refused(TestCase):
     def test_step_below_the_stability_limit_is_accepted(self):
         run("slab", {**SMALL, "Time/Phases": "2.5: 1"})
 
-    def test_phases_that_go_back(self):
-        self.refused("Phases", **{"Time/Phases": "1: 4, 0.5: 4"})
-
     def test_decimal_comma(self):
         """muParser would take the last number."""
         self.refused(
             r"Friction bound' has a comma outside of parentheses",
             **{"Boundary 2/Friction bound": "0,08"},
-        )
-
-    def test_assignment_for_a_comparison(self):
-        self.refused(
-            r"Friction bound' has a single '='",
-            **{"Boundary 2/Friction bound": "if(x=1, 0.1, 0.2)"},
         )
 
     def test_random_numbers(self):
@@ -497,11 +434,6 @@ class Refused(TestCase):
         run("slab", {**SMALL, "Time/Phases": "0.1: 1",
                      "Boundary 2/Friction bound":
                          "if(x >= 1 && x != 2 || x == 0, 0.08, max(0.08, 0.08))"})
-
-    def test_components_for_a_number(self):
-        self.refused(
-            "more than one component", **{"Boundary 2/Friction bound": "0.1; 0.2"}
-        )
 
     def test_contact_without_friction_law(self):
         """Also frictionless contact has to be asked for."""
@@ -520,33 +452,9 @@ class Refused(TestCase):
             **{"Boundary 2/Friction law": "coulomb"},
         )
 
-    def test_traction_without_value(self):
-        self.refused(
-            "'Boundary 0/Traction' is missing", **{"Boundary 0/Traction": ""}
-        )
-
-    def test_point_that_is_none(self):
-        self.refused("Points.*2 finite numbers", **{"Output/Points": "nan, 0"})
-
-    def test_free_translation_along_an_oblique_direction(self):
-        self.refused(
-            r"translation along \(0\.866, 0\.5\)",
-            **{
-                "Geometry/Rotation angle": 30,
-                "Boundary 0/Role": "free",
-                "Boundary 3/Role": "symmetry",
-            },
-        )
-
-    def test_expression_without_value(self):
-        self.refused("Traction", **{"Boundary 0/Traction": "sqrt(-1 - t); 0"})
-
     def test_expression_that_loses_its_value(self):
         """Fine at t = 0, NaN after t = 0.5."""
         self.refused("Traction", **{"Boundary 0/Traction": "t*sqrt(0.5 - t); 0"})
-
-    def test_expression_with_an_unknown_symbol(self):
-        self.refused("Body force", **{"Loads/Body force": "q*t; 0"})
 
     def test_long_expressions_are_not_repeated(self):
         for text in "q*" + "1 + " * 75000 + "t; 0", "q" * 300000 + "; 0", "1;" * 9999:
@@ -579,9 +487,6 @@ class Refused(TestCase):
             **{"Geometry/Boundary refinements": "2" + 300000 * " " + ": 1"},
         )
         self.assertLess(len(result.stderr), 500)
-
-    def test_long_names_of_files(self):
-        self.refused_text(f"include {'x' * 5000}\n", r"x{100}\.\.\.' does not exist")
 
     def test_numbers_beyond_all_measure(self):
         """Squares of what is finite need not be."""

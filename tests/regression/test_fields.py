@@ -92,8 +92,7 @@ class Uniform(TestCase):
                     )
             rate = dev(stress) / (2 * VISCOSITY)
             for name, value in (
-                ("creep_strain", equivalent(creep)),
-                ("creep_rate", equivalent(rate)),
+                ("creep_strain", equivalent(creep)), ("creep_rate", equivalent(rate))
             ):
                 self.assertClose(body[name], value, SINGLE, 1e-9, f"{name} {n}")
             for i, value in enumerate(sorted(np.diag(stress), reverse=True)):
@@ -131,9 +130,7 @@ class Uniform(TestCase):
 
     def test_elastic(self):
         """Nothing creeps, and nothing is irreversible."""
-        result = run(
-            "fields", self.scene(2, **{"Material/Law": "elastic"}), text=""
-        )
+        result = run("fields", self.scene(2, **{"Material/Law": "elastic"}), text="")
         body = result.fields().cell_data
         for name in "creep_strain", "creep_rate", "irreversible_strain_xx":
             self.assertEqual(abs(body[name]).max(), 0, name)

@@ -8,6 +8,7 @@ import sys
 import numpy as np
 
 from harness import SOURCE, TestCase, main, run
+from runs import of_law, on_boundary
 
 sys.path.insert(0, str(SOURCE / "contrib"))
 
@@ -20,17 +21,11 @@ SQUARE = ("symmetry", PRESSED, "symmetry", "free")
 # a block on a plane with Coulomb friction, which slips in part and creeps
 BLOCK = {
     "Geometry/Boundary refinements": "2: 1",
-    "Material/Law": "norton",
-    "Material/norton/Rate factor": 20,
-    "Material/norton/Exponent": 3,
-    "Material/norton/Stress cap": 1,
+    **of_law("norton", Rate_factor=20, Exponent=3, Stress_cap=1),
     "Time/Scheme": "backward Euler",
     "Time/Phases": "1: 4",
-    "Boundary 3/Role": "traction",
-    "Boundary 3/Pressure": "0.05*t",
-    "Boundary 2/Role": "contact",
-    "Boundary 2/Contact law": "unilateral",
-    "Boundary 2/Friction law": "coulomb",
+    **on_boundary(3, Role="traction", Pressure="0.05*t"),
+    **on_boundary(2, Role="contact", Contact_law="unilateral", Friction_law="coulomb"),
     "Boundary 2/Friction coefficient": 0.2,
 }
 
@@ -98,10 +93,7 @@ class Patch(TestCase):
         self.check(
             force=0,
             heat=1e-3,
-            **{
-                "Temperature/Value": "20 + 10*t",
-                "Material/Thermal expansion": 1e-4,
-            },
+            **{"Temperature/Value": "20 + 10*t", "Material/Thermal expansion": 1e-4},
         )
 
     def test_ranks(self):
@@ -117,10 +109,7 @@ class Patch(TestCase):
             "symmetry",
             "free",
             **{
-                "Material/Law": "norton",
-                "Material/norton/Rate factor": rate,
-                "Material/norton/Exponent": n,
-                "Material/norton/Stress cap": 1,
+                **of_law("norton", Rate_factor=rate, Exponent=n, Stress_cap=1),
                 "Initial state/Equilibrate": "true",
                 "Time/Scheme": "backward Euler",
                 "Time/Phases": "1: 2",
@@ -302,10 +291,7 @@ class Cylinder(TestCase):
                 "Geometry/Generator": "quarter_hyper_shell",
                 "Geometry/Arguments": "0, 0 : 1 : 2 : 4 : true",
                 "Geometry/Global refinements": 3,
-                "Material/Law": "norton",
-                "Material/norton/Rate factor": rate,
-                "Material/norton/Exponent": n,
-                "Material/norton/Stress cap": 10,
+                **of_law("norton", Rate_factor=rate, Exponent=n, Stress_cap=10),
                 "Time/Scheme": "Heun",
                 "Time/Phases": f"1: {steps}",
                 "Output/Points": "1, 0",

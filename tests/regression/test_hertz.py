@@ -301,9 +301,7 @@ class PartialSlip(Contact):
             with self.subTest(t=result["t"][i], **changes):
                 profile = Profile(result, i)
                 self.check_complementary(profile)
-                a = np.sqrt(
-                    4 * force[i] * self.RADIUS / (np.pi * STIFFNESS[self.NU])
-                )
+                a = np.sqrt(4 * force[i] * self.RADIUS / (np.pi * STIFFNESS[self.NU]))
                 peak = 2 * force[i] / (np.pi * a)
                 x, q = profile.x, profile.shear
                 self.assertClose(
@@ -407,10 +405,7 @@ class PartialSlip(Contact):
             of_full, found, exact, other = (
                 self.in_strips(profile, values, a)
                 for values in (
-                    self.FRICTION * full,
-                    profile.shear,
-                    shear,
-                    by_shear_alone(-1),
+                    self.FRICTION * full, profile.shear, shear, by_shear_alone(-1)
                 )
             )
             size = np.linalg.norm(of_full)
@@ -600,9 +595,7 @@ class Indentation(Contact):
     def test_space(self):
         # measured: 0.22 of a cell, 0.0296, 0.0379, falling as a grows to 8 cells
         result = run("indentation_3d")
-        self.check(
-            result, 3, self.CREEP_OF_ZENER, area=0.5, radius=0.06, pressure=0.08
-        )
+        self.check(result, 3, self.CREEP_OF_ZENER, area=0.5, radius=0.06, pressure=0.08)
 
     def test_constant_load(self):
         """The radius grows at a force that stays."""
@@ -613,8 +606,7 @@ class Indentation(Contact):
             "Boundary 4/Foundation displacement": "0",
         }
         for law, creep in (
-            (self.ZENER, self.CREEP_OF_ZENER),
-            (self.MAXWELL, self.CREEP_OF_MAXWELL),
+            (self.ZENER, self.CREEP_OF_ZENER), (self.MAXWELL, self.CREEP_OF_MAXWELL)
         ):
             result = run("hertz_2d", {**self.PLANE, **law, **load})
             self.assertClose(abs(result["contact_force_y"][2:]), total, relative=1e-8)

@@ -13,9 +13,7 @@ from harness import TestCase, main, run
 class CoulombBlock(TestCase):
     def test_slider_that_goes_and_returns(self):
         """2D: stick, slip, stick on the way back, slip the other way."""
-        result = run(
-            "coulomb_block_2d", {"Output/Additional fields": "friction work"}
-        )
+        result = run("coulomb_block_2d", {"Output/Additional fields": "friction work"})
         mu, p_wave = 1 / 2.6, 0.3 / 1.3 / 0.4 + 2 / 2.6
         tau, foot, slip_work, area = [0.0], [0.0], [0.0], [None]
         t = result["t"]
@@ -51,9 +49,7 @@ class CoulombBlock(TestCase):
         self.check_identities(result)
 
         contact = result.fields("contact")
-        self.assertClose(
-            contact.point_data["traction"][:, 0], -tau[-1], absolute=1e-8
-        )
+        self.assertClose(contact.point_data["traction"][:, 0], -tau[-1], absolute=1e-8)
         self.assertClose(contact.point_data["bound"], 0.04, absolute=1e-8)
         self.assertClose(
             contact.point_data["friction_work"], slip_work[-1] / 2, 1e-6, 1e-9

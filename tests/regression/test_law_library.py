@@ -13,21 +13,15 @@ from pathlib import Path
 
 import law_example
 from harness import EXECUTABLE, PROGRAM, SOURCE, TestCase, main, run, run_program
+from runs import of_law
 
 # Where the package files of the build are.
 PACKAGE = Path(EXECUTABLE).parent
 
 GAROFALO = {
-    "Material/Law": "garofalo",
-    "Material/garofalo/Rate factor": "0.02*(1 + x)",
-    "Material/garofalo/Stress scale": 0.1,
-    "Material/garofalo/Stress cap": 10,
+    **of_law("garofalo", Rate_factor="0.02*(1 + x)", Stress_scale=0.1, Stress_cap=10),
 }
-PARSED = {
-    "Material/Law": "parsed",
-    "Material/parsed/Strain rate": "0.02*sinh(sigma_eq/0.1)",
-    "Material/parsed/Factor": "1 + x",
-}
+PARSED = {**of_law("parsed", Strain_rate="0.02*sinh(sigma_eq/0.1)", Factor="1 + x")}
 
 # Laws that do what their names say.
 MISBEHAVING = r"""

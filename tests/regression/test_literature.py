@@ -10,6 +10,7 @@ from scipy.optimize import brentq
 from scipy.special import ellipk
 
 from harness import TestCase, main, run
+from runs import on_boundary
 
 
 class Published(TestCase):
@@ -59,9 +60,7 @@ class Published(TestCase):
         goes on beside them, with the points on either side."""
         other_way = {
             "Boundary 22/Role": "free",
-            "Boundary 4/Role": "contact",
-            "Boundary 4/Against": 22,
-            "Boundary 4/Contact law": "unilateral",
+            **on_boundary(4, Role="contact", Against=22, Contact_law="unilateral"),
             "Boundary 4/Friction law": "none",
         }
         for changes in {}, other_way:
@@ -86,8 +85,7 @@ class Published(TestCase):
         rough = run(
             "literature/roller_on_block",
             {
-                "Boundary 22/Friction law": "coulomb",
-                "Boundary 22/Friction coefficient": 0.1,
+                **on_boundary(22, Friction_law="coulomb", Friction_coefficient=0.1),
                 "Time/Phases": "1: 5",
             },
         )["max_pressure"][-1]
@@ -108,14 +106,10 @@ class Published(TestCase):
             "Material 0/Young's modulus": 1e10,
             "Material 0/Poisson's ratio": 0,
             "Material 1/Young's modulus": 1e6,
-            "Boundary 23/Role": "displacement",
-            "Boundary 23/Displacement": "0; -0.006*t",
+            **on_boundary(23, Role="displacement", Displacement="0; -0.006*t"),
             "Time/Phases": "1: 3",
         }
-        friction = {
-            "Boundary 22/Friction law": "coulomb",
-            "Boundary 22/Friction coefficient": 0.4,
-        }
+        friction = {**on_boundary(22, Friction_law="coulomb", Friction_coefficient=0.4)}
         smooth, rough = (
             run("literature/roller_on_block", {**roller, **more})
             for more in ({}, friction)
@@ -148,11 +142,8 @@ class Published(TestCase):
                 **{f"Boundary {n}/Role": "clamped" for n in range(4)},
                 **{f"Boundary {n}/Role": "free" for n in (4, 5, 20, 22)},
                 "Boundary 5/Against": "",
-                "Boundary 24/Role": "contact",
-                "Boundary 24/Against": 5,
-                "Boundary 24/Contact law": "unilateral",
-                "Boundary 24/Friction law": "coulomb",
-                "Boundary 24/Friction coefficient": 0.4,
+                **on_boundary(24, Role="contact", Against=5, Contact_law="unilateral"),
+                **on_boundary(24, Friction_law="coulomb", Friction_coefficient=0.4),
                 "Boundary 25/Role": "displacement",
                 "Boundary 25/Displacement": "0; 0; -0.25*sin(2*pi*0.025/40)*t",
                 "Output/Points": "",
@@ -168,9 +159,7 @@ class Published(TestCase):
             place = abs(face.points[:, :2] - x).sum(axis=1).argmin()
             found = face.point_data["traction"][place, :2]
             # measured: 0.005 and 0.001 of them
-            self.assertClose(
-                found, friction, absolute=error * np.linalg.norm(friction)
-            )
+            self.assertClose(found, friction, absolute=error * np.linalg.norm(friction))
             sticks = face.point_data["stick"][place]
             self.assertEqual(sticks, 1 if x[1] == -1 / 4 else 0)
 

@@ -89,13 +89,7 @@ class Options(Manners):
     def test_help(self):
         text = self.call("--help").stdout
         for option in (
-            "--set",
-            "--check",
-            "--describe",
-            "--quiet",
-            "--log",
-            "--version",
-            "--help",
+            "--set", "--check", "--describe", "--quiet", "--log", "--version", "--help"
         ):
             self.assertIn(option, text)
         self.assertLessEqual(max(map(len, text.splitlines())), 80)
@@ -354,9 +348,7 @@ class Voice(Manners):
             *("--set", "Step control/Tolerance=1e-2"),
             *("--set", "Step control/Landing times=0.3001, 0.7, 0.7001, 1.5, 1.5001"),
         ).stdout
-        lines = re.findall(
-            r"^Step +(\d+)/~(\d+)  t = (\S+) .*  left \d", text, re.M
-        )
+        lines = re.findall(r"^Step +(\d+)/~(\d+)  t = (\S+) .*  left \d", text, re.M)
         # The first ones know nothing of their growth.
         first = re.findall(r"^Step (\d+)  t = ", text, re.M)
         self.assertIn(first, (["1", "2"], ["1", "2", "3"]))
@@ -425,8 +417,7 @@ class Voice(Manners):
                 what=name,
             )
         for name, column in (
-            ("friction force", "friction_force"),
-            (f"reaction of {top}", "reaction_3"),
+            ("friction force", "friction_force"), (f"reaction of {top}", "reaction_3")
         ):
             for value, axis in zip(words(name).split(";"), "xy"):
                 self.assertClose(

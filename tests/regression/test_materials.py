@@ -9,6 +9,7 @@ import re
 import numpy as np
 
 from harness import TestCase, main, run
+from runs import of_law
 from laws import (
     E,
     E_INVERSE,
@@ -45,9 +46,7 @@ class UniformStrain(TestCase):
         for entry, value in LAWS[name][1].items():
             overrides[f"Material/{name}/{entry}"] = value
         result = run("uniform_strain", {**overrides, **more})
-        strain, stress = self.expected(
-            law or LAWS[name][0], result["t"], dim, initial
-        )
+        strain, stress = self.expected(law or LAWS[name][0], result["t"], dim, initial)
         scale = np.abs(stress).max()
         self.assertClose(
             result["stress_norm"],
@@ -199,12 +198,7 @@ class UniformStrain(TestCase):
         self.assertIn("0.03", result.stdout)
         uncapped = run(
             "uniform_strain",
-            {
-                "Material/Law": "norton",
-                "Material/norton/Rate factor": 1,
-                "Material/norton/Exponent": 3,
-                "Material/norton/Stress cap": 10,
-            },
+            {**of_law("norton", Rate_factor=1, Exponent=3, Stress_cap=10)},
         )
         self.assertClose(uncapped["capped_volume"], 0)
 
@@ -229,12 +223,8 @@ class Layers(TestCase):
     def check(self, viscosity=lambda y, t: 0.5, ranks=1, **more):
         result = run("layers", more, ranks=ranks)
         bottom, middle = self.foot(result, viscosity)
-        self.assertClose(
-            result["point0_x"], bottom, absolute=1e-9, what="foot"
-        )
-        self.assertClose(
-            result["point1_x"], middle, absolute=1e-9, what="interface"
-        )
+        self.assertClose(result["point0_x"], bottom, absolute=1e-9, what="foot")
+        self.assertClose(result["point1_x"], middle, absolute=1e-9, what="interface")
         self.assertClose(result["max_von_mises"],
                          np.sqrt(3) * 0.1 * np.minimum(result["t"], 2 - result["t"]),
                          absolute=1e-9)
@@ -456,8 +446,7 @@ class Refused(TestCase):
 
     def test_norton_without_a_cap(self):
         self.refused(
-            {"Material/Law": "norton"},
-            "'Material/norton/Stress cap' is not given",
+            {"Material/Law": "norton"}, "'Material/norton/Stress cap' is not given"
         )
 
     def test_negative_creep_rate(self):
@@ -489,8 +478,7 @@ class Refused(TestCase):
         """Told, not refused: expressions may leave one out; its law is not
         even made."""
         result = run(
-            "layers",
-            {"Material 7/Law": "maxwell", "Material 7/maxwell/Viscosity": -1},
+            "layers", {"Material 7/Law": "maxwell", "Material 7/maxwell/Viscosity": -1}
         )
         self.assertRegex(result.stdout, "Warning: 'Material 7' is not used")
 
@@ -576,8 +564,7 @@ class Anisotropy(TestCase):
             {
                 **self.NO_MODULI,
                 "Material/Voigt matrix": self.text(self.MATRIX),
-                "Material/Law": "maxwell",
-                "Material/maxwell/Viscosity": 2,
+                **of_law("maxwell", Viscosity=2),
             },
         )
 
@@ -598,9 +585,7 @@ class Anisotropy(TestCase):
             gradient = displacement_gradient(t[n], 2)
             stress = apply(0.5 * (gradient + gradient.T)) + z
             norms.append(norm(stress))
-        self.assertClose(
-            result["stress_norm"], norms, absolute=1e-10, what="stress"
-        )
+        self.assertClose(result["stress_norm"], norms, absolute=1e-10, what="stress")
 
 
 if __name__ == "__main__":

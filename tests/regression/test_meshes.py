@@ -12,6 +12,7 @@ import tempfile
 from pathlib import Path
 
 from harness import PROGRAM, SOURCE, TestCase, as_prm, main, run, scene_file
+from runs import on_boundary, with_roles
 
 MESHES = SOURCE / "prm" / "verification" / "meshes"
 FORMATS = "_2.msh", "_4.msh", ".ucd", ".vtk", ".inp"
@@ -86,15 +87,11 @@ class Same(TestCase):
         text = as_prm(
             {
                 "Dimension": "3",
-                "Boundary 0/Role": "free",
-                "Boundary 1/Role": "free",
-                "Boundary 2/Role": "contact",
-                "Boundary 2/Friction law": "tresca",
+                **with_roles(free=[0, 1]),
+                **on_boundary(2, Role="contact", Friction_law="tresca"),
                 "Boundary 2/Friction bound": "0.02",
-                "Boundary 3/Role": "displacement",
-                "Boundary 3/Displacement": "0.1*t; -0.01*t; 0",
-                "Boundary 4/Role": "free",
-                "Boundary 5/Role": "free",
+                **on_boundary(3, Role="displacement", Displacement="0.1*t; -0.01*t; 0"),
+                **with_roles(free=[4, 5]),
             }
         )
         short = {
@@ -192,8 +189,7 @@ class Converted(TestCase):
             for block, other in zip(mesh.cells, expected.cells):
                 self.assertEqual(block.data.tolist(), other.data.tolist())
         for dimension, kind, nodes in (
-            (2, 8, [0, 1, 3, 2]),
-            (3, 11, [0, 1, 3, 2, 4, 5, 7, 6]),
+            (2, 8, [0, 1, 3, 2]), (3, 11, [0, 1, 3, 2, 4, 5, 7, 6])
         ):
             n = 2**dimension
             text = "# vtk DataFile Version 3.0\n\nASCII\nDATASET UNSTRUCTURED_GRID\n"
@@ -222,9 +218,7 @@ class Converted(TestCase):
 
     def test_numbers_beyond_measure(self):
         for number in (
-            "-99999999999999999999999",
-            "99999999999999999999999",
-            "1000000000001",
+            "-99999999999999999999999", "99999999999999999999999", "1000000000001"
         ):
             reason = f"expected the number of a node, found '{number}"
             self.damaged(".inp", "\n1, 0.0", f"\n{number}, 0.0", reason)

@@ -19,7 +19,7 @@ import tempfile
 import numpy as np
 
 from harness import DEFECTS, EFFORT, TestCase, main, run
-from runs import entries
+from runs import elastic_moduli, entries, of_law, on_boundary
 
 # rubbing_2d.prm in space: a block of 4 x 4 x 3 cells that turns as it slides
 IN_SPACE = {
@@ -106,10 +106,7 @@ class Lagged(Contact):
             ][-1]
 
         exact = force(32, **{"Solver/Coulomb tolerance": 1e-9})
-        errors = [
-            abs(force(steps, **LAGGED) - exact)
-            for steps in (4, 8, 16)
-        ]
+        errors = [abs(force(steps, **LAGGED) - exact) for steps in (4, 8, 16)]
         self.assertGreater(errors[-1], 0.02 * exact)
         for coarse, fine in zip(errors, errors[1:]):
             order = np.log2(coarse / fine)
@@ -123,11 +120,7 @@ class Closed(Contact):
     def check(self, place, plate, foundation):
         dim, _, below, _ = place
         normal = "xyz"[dim - 1]
-        body = {
-            "Material/Law": "maxwell",
-            "Material/maxwell/Viscosity": 0.5,
-            "Time/Phases": "1: 8, 1.5: 8",
-        }
+        body = {**of_law("maxwell", Viscosity=0.5), "Time/Phases": "1: 8, 1.5: 8"}
         tresca = {"Friction law": "tresca", "Friction bound": 0.05, **foundation}
         open_ = rub(place, {**tresca, "Gap": 0}, plate, body)
         bilateral = {"Contact law": "bilateral", **tresca, "Gap": ""}
@@ -155,9 +148,7 @@ class Closed(Contact):
         )
         for name in "displacement", "stress_xy", "von_mises":
             fields = [result.fields() for result in (open_, closed)]
-            u, v = (
-                {**f.point_data, **f.cell_data}[name].reshape(-1) for f in fields
-            )
+            u, v = ({**f.point_data, **f.cell_data}[name].reshape(-1) for f in fields)
             self.assertLess(abs(u - v).max(), 1e-6 * abs(v).max(), name)
         self.check_identities(open_)
         self.assertGreater(open_["slip_area"].max(), 0.1)
@@ -188,17 +179,12 @@ class Greco(Contact):
         "Dimension": 2,
         "Geometry/Generator": "subdivided_hyper_rectangle",
         "Geometry/Arguments": "64, 64 : 0, 0 : 0.04, 0.04 : true",
-        "Material/Young's modulus": 1.3e11,
-        "Material/Poisson's ratio": 0.2,
-        "Boundary 0/Role": "traction",
-        "Boundary 0/Pressure": "15e7*min(t, 1)",
+        **elastic_moduli(1.3e11, 0.2),
+        **on_boundary(0, Role="traction", Pressure="15e7*min(t, 1)"),
         "Boundary 1/Role": "symmetry",
-        "Boundary 2/Role": "contact",
-        "Boundary 2/Contact law": "unilateral",
-        "Boundary 2/Friction law": "coulomb",
-        "Boundary 2/Friction coefficient": 1,
-        "Boundary 3/Role": "traction",
-        "Boundary 3/Pressure": "5e7*min(t, 1)",
+        **on_boundary(2, Role="contact", Contact_law="unilateral"),
+        **on_boundary(2, Friction_law="coulomb", Friction_coefficient=1),
+        **on_boundary(3, Role="traction", Pressure="5e7*min(t, 1)"),
         "Output/Points": "0, 0; 0.00125, 0; 0.005, 0; 0.0075, 0; 0.01125, 0",
         "Solver/Coulomb pressure": "Newton",
     }
@@ -206,9 +192,7 @@ class Greco(Contact):
     def test_displacements(self):
         """The limit is extrapolated from 128 and 256 cells a side."""
         for cells, steps, ranks, error in (
-            (256, 1, 1, 1e-4),
-            (64, 5, 1, 4e-4),
-            (64, 1, 2, 4e-4),
+            (256, 1, 1, 1e-4), (64, 5, 1, 4e-4), (64, 1, 2, 4e-4)
         ):
             with self.subTest(cells=cells, steps=steps, ranks=ranks):
                 size = "0, 0 : 0.04, 0.04 : true"
@@ -255,8 +239,7 @@ class Greco(Contact):
             given = {
                 "Table 1/File": table.name,
                 "Table 1/Outside": "constant",
-                "Boundary 2/Friction law": "tresca",
-                "Boundary 2/Friction bound": "bound(x)*t",
+                **on_boundary(2, Friction_law="tresca", Friction_bound="bound(x)*t"),
             }
             tresca = run("greco", {**multigrid, **given}, text="")
         self.assertClose(tresca["point0_x"][-1], law["point0_x"][-1], relative=1e-3)
@@ -293,10 +276,7 @@ class HardCases(Contact):
             self.assertLess(result["force_balance_defect"][3:].max(), 1e-7)
 
         plate = "-1e-9*max(0, t - 1)", "0", "0"
-        more = {
-            "Time/Phases": "1: 2, 3: 2",
-            "Solver/Coulomb tolerance": 1e-9,
-        }
+        more = {"Time/Phases": "1: 2, 3: 2", "Solver/Coulomb tolerance": 1e-9}
         for friction in FRICTIONLESS, {}:
             self.check_both(check, {"Gap": 0, **friction}, plate, more)
 
@@ -449,8 +429,7 @@ class HardCases(Contact):
         push = "0.05*if(t < 0.5, 0, if(t < 1, t - 0.5, 1.5 - t))"
         turn = "0.02*(1 - cos(2*pi*max(0, t - 0.5))); 0.02*sin(2*pi*max(0, t - 0.5))"
         flow = {
-            "Material/Law": "perzyna",
-            "Material/perzyna/Yield radius": 0.003,
+            **of_law("perzyna", Yield_radius=0.003),
             "Time/Scheme": "backward Euler",
         }
         for place, along, down, refinements, mu, body in (

@@ -120,9 +120,7 @@ class Slab(TestCase):
         self.assertEqual(set(fields.point_data), {"displacement", "velocity"})
         components = [f"{s}_{c}" for s in ("stress", "irreversible_stress")
                       for c in ("xx", "yy", "zz", "xy")]
-        self.assertEqual(
-            set(fields.cell_data), {*components, "von_mises", "subdomain"}
-        )
+        self.assertEqual(set(fields.cell_data), {*components, "von_mises", "subdomain"})
         for data in fields.point_data, fields.cell_data:
             for name, values in data.items():
                 self.assertTrue(np.all(np.isfinite(values)), name)
@@ -555,9 +553,7 @@ class Unwritable(TestCase):
 
     def test_results_of_another_rank(self):
         (self.work / "solution_00001.1.vtu").symlink_to("/dev/full")
-        self.fails(
-            "solution_00001.1.vtu", ranks=2, **{"Output/Directory": self.work}
-        )
+        self.fails("solution_00001.1.vtu", ranks=2, **{"Output/Directory": self.work})
 
     def test_messages(self):
         """The results are complete."""

@@ -87,11 +87,7 @@ class Opens(TestCase):
     def draw(self, result, script, *arguments):
         picture = result.directory / "paraview.png"
         process = self.pvbatch(
-            script,
-            "--screenshot",
-            picture,
-            *arguments,
-            cwd=result.directory.parent,
+            script, "--screenshot", picture, *arguments, cwd=result.directory.parent
         )
         self.assertEqual(process.returncode, 0, process.stdout[-3000:])
         self.assertTrue(picture.exists(), process.stdout[-3000:])

@@ -674,9 +674,7 @@ class Numbers(TestCase):
         }
         self.assertEqual(list(chosen), ["error in the\nenergy norm"])
         panel, names = chosen["error in the\nenergy norm"]
-        self.assertEqual(
-            names, ["estimate_space", "estimate_time", "estimate_total"]
-        )
+        self.assertEqual(names, ["estimate_space", "estimate_time", "estimate_total"])
         figure, axes = plt.subplots()
         history.draw_panel(axes, panel, names, [("", statistics)], Units())
         tops = [line.get_ydata().max() for line in axes.get_lines()[:3]]
@@ -839,9 +837,7 @@ class Pictures(TestCase):
             self.assertEqual(process.stderr, "")
         else:
             self.assertRegex(process.stderr, reason)
-        paths = [
-            result.directory / line for line in process.stdout.strip().split("\n")
-        ]
+        paths = [result.directory / line for line in process.stdout.strip().split("\n")]
         for path in paths:
             self.assertTrue(path.exists(), path)
             if path.suffix == ".png":
@@ -860,6 +856,7 @@ class Pictures(TestCase):
             "slab",
             {
                 **SMALL_SLAB,
+                "Material/Law": "elastic",  # a picture fewer a component
                 "Output/Fields every": 4,
                 "Output/Lines": "0, 0 : 2, 0 : 33; 1, 0 : 1, 1 : 17",
                 "Output/Line fields": "slip, stress",
@@ -903,8 +900,8 @@ class Pictures(TestCase):
             with self.subTest(friction=friction):
                 law["Boundary 2/Friction law"] = friction
                 result = run("slab", {**SMALL_SLAB, **law, "Output/Fields every": 4})
-                asked = ["overview", "contact", "history"]
-                asked += ["stick-slip"] if friction == "coulomb" else []
+                asked = ["overview", "contact"]
+                asked += ["history", "stick-slip"] if friction == "coulomb" else []
                 names = self.draw(result, *asked)
                 self.assertEqual(len(names), len(asked))
         self.draw(result, "von_mises", "--window", "0,0,1,0.5", "--label", "0.5,0.2=here")
@@ -966,17 +963,16 @@ class Pictures(TestCase):
 
     def test_three_dimensions_hanging_nodes_and_two_ranks(self):
         result = run(
-            "pad_adaptive", {"Time/Phases": "0.5: 5", "Output/Fields every": 1}, ranks=2
+            "pad_adaptive", {"Time/Phases": "0.5: 2", "Output/Fields every": 1}, ranks=2
         )
-        wanted = ("displacement_z", "estimator", "subdomain", "contact", "history",
-                  "hysteresis")
+        wanted = "estimator", "subdomain", "contact", "history", "hysteresis"
         names = self.draw(result, "overview", *wanted, "--view", "30,120")
         self.assertLessEqual({f"{name}.png" for name in wanted}, names)
         self.assertIn("two-dimensional scenes", self.refuse(result, "stick-slip"))
 
     def test_adaptive_face_and_pieces_at_an_angle(self):
-        result = run("slab_adaptive", {"Time/Phases": "1: 8", "Output/Fields every": 1})
-        self.draw(result, "stick-slip", "contact", "history", "estimator")
+        result = run("slab_adaptive", {"Time/Phases": "1: 6", "Output/Fields every": 1})
+        self.draw(result, "stick-slip", "contact", "estimator")
         result = run("corner_coulomb_90_2d", {"Output/Fields every": 1})
         self.draw(result, "overview", "contact", "stick-slip")
         self.draw(run("corner_tresca_90_3d"), "overview", "contact")
@@ -984,16 +980,16 @@ class Pictures(TestCase):
     def test_animation(self):
         from PIL import Image
 
-        result = run("slab", {**SMALL_SLAB, "Output/Fields every": 8})
+        result = run("slab", {**SMALL_SLAB, "Output/Fields every": 16})
         names = self.draw(result, "contact", "von_mises", "--animate")
         self.assertEqual(names, {"contact.gif", "von_mises.gif"})
         frames = []
         with Image.open(result.directory / "pictures" / "contact.gif") as image:
-            self.assertEqual(image.n_frames, 5)
-            for i in range(5):
+            self.assertEqual(image.n_frames, 3)
+            for i in range(3):
                 image.seek(i)
                 frames.append(np.asarray(image.convert("RGB")).astype(int))
-        self.assertGreater(np.abs(frames[4] - frames[1]).max(), 100)
+        self.assertGreater(np.abs(frames[2] - frames[1]).max(), 100)
         self.assertIn("no animation", self.refuse(result, "history", "--animate"))
 
     def test_without_friction(self):

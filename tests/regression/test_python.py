@@ -76,9 +76,7 @@ class Runs(TestCase):
         cls.work = Path(tempfile.mkdtemp(prefix="python_"))
         cls.addClassCleanup(shutil.rmtree, cls.work, ignore_errors=True)
         cls.program = Program(PROGRAM, launcher=MPIRUN)
-        cls.results = cls.program.run(
-            page_scene(), cls.work / "block", overrides=SHORT
-        )
+        cls.results = cls.program.run(page_scene(), cls.work / "block", overrides=SHORT)
         cls.read = Run(
             cls.results.directory, types.SimpleNamespace(returncode=0, stdout="", stderr="")
         )

@@ -25,9 +25,9 @@ from unittest import mock
 import numpy as np
 
 from harness import DEFECTS, EFFORT, EXECUTABLE, PROGRAM, TestCase, main
-from runs import EVERY_STEP, Job, without_wall_times
+from runs import EVERY_STEP, Job, on_boundary, without_wall_times
 
-N_KILLS = int(os.environ.get("RESTART_KILLS", 6))
+N_KILLS = int(os.environ.get("RESTART_KILLS", 4))
 N_MUTATIONS = int(os.environ.get("RESTART_MUTATIONS", 12))
 
 SLAB = {
@@ -134,11 +134,11 @@ class Identical(RestartCase):
     def test_adaptive_slab_two_ranks(self):
         """With the work of friction, a sum over steps and meshes."""
         overrides = {
-            "Time/Phases": "1: 8, 2: 8",
+            "Time/Phases": "1: 5, 2: 3",
             "Output/Fields every": 3,
             "Output/Additional fields": "friction work, creep strain",
         }
-        self.check("slab_adaptive", overrides, (6, 11), ranks=2)
+        self.check("slab_adaptive", overrides, (2, 6), ranks=2)
 
     def test_adaptive_pad(self):
         overrides = {
@@ -149,8 +149,8 @@ class Identical(RestartCase):
         self.check("pad_adaptive", overrides, (1, 4))
 
     def test_adaptive_pad_two_ranks(self):
-        overrides = {"Time/Phases": "1.5: 8", "Mesh refinement/Cell budget": 500}
-        self.check("pad_adaptive", overrides, (4,), ranks=2)
+        overrides = {"Time/Phases": "1.5: 4", "Mesh refinement/Cell budget": 300}
+        self.check("pad_adaptive", overrides, (2,), ranks=2)
 
     def test_adaptive_body_of_revolution(self):
         overrides = {
@@ -166,10 +166,8 @@ class Identical(RestartCase):
         """Normals at nodes, gaps and what lies opposite are made anew."""
         overrides = {
             "Geometry/Global refinements": 1,
-            "Boundary 1/Friction law": "coulomb",
-            "Boundary 1/Friction coefficient": 0.2,
-            "Boundary 21/Role": "traction",
-            "Boundary 21/Pressure": "2e-3*t*x^2",
+            **on_boundary(1, Friction_law="coulomb", Friction_coefficient=0.2),
+            **on_boundary(21, Role="traction", Pressure="2e-3*t*x^2"),
             "Material 0/Law": "maxwell",
             "Material 0/maxwell/Viscosity": 3,
             "Time/Phases": "2: 4",
@@ -233,10 +231,8 @@ class Identical(RestartCase):
     def test_contact_that_opens(self):
         """With Coulomb's law, also where nothing but contact holds the body."""
         pressed = {
-            "Boundary 2/Contact law": "unilateral",
-            "Boundary 2/Gap": "0.002*(x - 1)^2",
-            "Boundary 2/Friction law": "coulomb",
-            "Boundary 2/Friction coefficient": 0.3,
+            **on_boundary(2, Contact_law="unilateral", Gap="0.002*(x - 1)^2"),
+            **on_boundary(2, Friction_law="coulomb", Friction_coefficient=0.3),
         }
         self.check(
             "slab",
@@ -256,8 +252,7 @@ class Identical(RestartCase):
                 **SLAB,
                 **pressed,
                 "Boundary 0/Traction": "0.01*max(0, t - 0.5); 0",
-                "Boundary 3/Role": "traction",
-                "Boundary 3/Traction": "0; -0.03*min(2*t, 1)",
+                **on_boundary(3, Role="traction", Traction="0; -0.03*min(2*t, 1)"),
             },
             (2, 9),
         )
@@ -272,17 +267,15 @@ class Identical(RestartCase):
 
     def test_contact_that_opens_in_space_two_ranks(self):
         overrides = {
-            "Time/Phases": "1.5: 8",
-            "Boundary 4/Contact law": "unilateral",
-            "Boundary 4/Gap": "0.004*(x^2 + y^2)",
-            "Boundary 4/Friction law": "coulomb",
-            "Boundary 4/Friction coefficient": 0.3,
+            "Time/Phases": "1.5: 4",
+            **on_boundary(4, Contact_law="unilateral", Gap="0.004*(x^2 + y^2)"),
+            **on_boundary(4, Friction_law="coulomb", Friction_coefficient=0.3),
             "Boundary 5/Role": "displacement",
             "Boundary 5/Displacement": "0.02*sin(t); 0.01*t; -0.01*sin(3*t)",
             "Solver/Coulomb pressure": "fixed point",
-            "Mesh refinement/Cell budget": 500,
+            "Mesh refinement/Cell budget": 300,
         }
-        self.check("pad_adaptive", overrides, (1, 4, 6), ranks=2)
+        self.check("pad_adaptive", overrides, (1, 3), ranks=2)
 
     def test_a_stage_beyond_the_first_end(self):
         """The run ends when the material goes, and is made longer."""
@@ -309,9 +302,7 @@ class Identical(RestartCase):
         overrides = {
             "Material 1/Law": "maxwell",
             "Material 1/maxwell/Viscosity": 100,
-            "Boundary 2/Role": "contact",
-            "Boundary 2/Friction law": "tresca",
-            "Boundary 2/Friction bound": 0.3,
+            **on_boundary(2, Role="contact", Friction_law="tresca", Friction_bound=0.3),
             "Mesh refinement/Strategy": "residual",
             "Initial state/Reset displacement": "true",
         }
@@ -344,17 +335,17 @@ class OtherRanks(RestartCase):
                         )
 
     def test_slab(self):
-        self.compare("slab", SLAB, 6, (1, 2, 3))
+        self.compare("slab", SLAB, 6, (1, 3))
 
     def test_adaptive_slab(self):
-        self.compare("slab_adaptive", {"Time/Phases": "1: 8, 2: 8"}, 7, (2, 1, 3))
+        self.compare("slab_adaptive", {"Time/Phases": "1: 6, 2: 6"}, 5, (2, 3))
 
     def test_adaptive_pad(self):
-        overrides = {"Time/Phases": "1.5: 8", "Mesh refinement/Cell budget": 500}
-        self.compare("pad_adaptive", overrides, 4, (1, 2, 3))
+        overrides = {"Time/Phases": "1.5: 6", "Mesh refinement/Cell budget": 400}
+        self.compare("pad_adaptive", overrides, 3, (2, 1))
 
     def test_history_at_quadrature_points(self):
-        self.compare("cantilever_creep", {"Time/Phases": "2.6: 10"}, 5, (3, 1, 2))
+        self.compare("cantilever_creep", {"Time/Phases": "2.6: 10"}, 5, (3, 2))
 
 
 class JobOnDisk(Job):
@@ -435,7 +426,7 @@ class Killed(RestartCase):
                     wanted = chance.randrange(2, 14)
                     part = job.checkpoints / f"step_{wanted:06}.unfinished"
                     while process.poll() is None and not part.exists():
-                        pass
+                        time.sleep(2e-4)
                     time.sleep(chance.uniform(0, 0.002))
                     process.send_signal(signal.SIGKILL)
                     process.communicate()
@@ -928,32 +919,20 @@ class Changes(OfSlab):
             result = job.run("--restart")
             self.assertRegex(result.stdout, "changed.*Fields every.*Contact tolerance")
 
-    def test_geometry(self):
-        self.refused("Geometry/Global refinements", 1)
-
-    def test_role(self):
-        self.refused("Boundary 1/Role", "clamped")
-
-    def test_law(self):
-        self.refused("Material/Law", "elastic")
-
-    def test_history(self):
-        self.refused("Material/Stress history", "quadrature points")
-
-    def test_strategy(self):
-        self.refused("Mesh refinement/Strategy", "none")
-
-    def test_another_boundary(self):
+    def test_what_may_not_change(self):
+        for path, value in (
+            ("Geometry/Global refinements", 1),
+            ("Boundary 1/Role", "clamped"),
+            ("Material/Law", "elastic"),
+            ("Material/Stress history", "quadrature points"),
+            ("Mesh refinement/Strategy", "none"),
+            ("Output/Points", "0, 0; 2, 0"),
+        ):
+            with self.subTest(path):
+                self.refused(path, value)
         self.refused("Boundary 7/Role", "free", "Boundary 7")
-
-    def test_points(self):
-        self.refused("Output/Points", "0, 0; 2, 0")
-
-    def test_past_steps(self):
-        self.refused("Time/Phases", "1: 10, 2: 8", "Time/Phases")
-
-    def test_fewer_steps(self):
-        self.refused("Time/Phases", "1: 8", "Time/Phases")
+        for phases in "1: 10, 2: 8", "1: 8":  # past steps, fewer steps
+            self.refused("Time/Phases", phases, "Time/Phases")
 
 
 class Begin(RestartCase):

@@ -188,9 +188,7 @@ class Tables(Folder):
         self.assertEqual([len(row) for row in rows], [len(header)] * 2)
         # cells for unknowns as on the finest mesh
         cells = round(2e6 * 2 * 64**2 / (2 * 2 * 65**2), -1)
-        self.assertEqual(
-            rows[0][-1], f"***1200 s**: {cells:.0f} cells, 640 steps*"
-        )
+        self.assertEqual(rows[0][-1], f"***1200 s**: {cells:.0f} cells, 640 steps*")
         self.assertEqual(rows[1][-1], "–")
         bold = [row[-2].startswith("**") for row in rows]
         self.assertEqual(sum(bold), 1, rows)

@@ -10,7 +10,7 @@ some 1e-8 of their maximum.
 import numpy as np
 
 from harness import DEFECTS, EFFORT, TestCase, main, run
-from runs import rotation
+from runs import on_boundary, rotation
 
 AGREE = 1e-7
 
@@ -18,9 +18,7 @@ AGREE = 1e-7
 def expressions(matrix, components):
     """The rotated vector of expressions, in parameter-file form."""
     return "; ".join(
-        " + ".join(
-            f"({entry:.17g})*({text})" for entry, text in zip(row, components)
-        )
+        " + ".join(f"({entry:.17g})*({text})" for entry, text in zip(row, components))
         for row in matrix
     )
 
@@ -78,9 +76,7 @@ class Rotated(TestCase):
             {
                 "Geometry/Rotation angle": 117,
                 "Geometry/Translation": "-3, 0.7",
-                "Boundary 0/Traction": expressions(
-                    matrix, ("0.3*min(t, 2 - t)", "0")
-                ),
+                "Boundary 0/Traction": expressions(matrix, ("0.3*min(t, 2 - t)", "0")),
                 "Output/Points": "-3, 0.7",
             },
         )
@@ -90,9 +86,7 @@ class Rotated(TestCase):
         """Given normal stress on an oblique line, which moves normally."""
         matrix = rotation(30)
         pressure = "0.1*min(t, 1)"
-        tau = (
-            "min(min(1.5/13*max(0, t-1), 0.04), max(0.04 - 1.5/13*(t-2), -0.04))"
-        )
+        tau = ("min(min(1.5/13*max(0, t-1), 0.04), max(0.04 - 1.5/13*(t-2), -0.04))")
         drive = "0.3*min(max(0, t-1), 3-t)"
         straight = run("coulomb_block_2d")
         foot = matrix @ (1, 0)
@@ -103,9 +97,7 @@ class Rotated(TestCase):
                 "Boundary 0/Traction": expressions(
                     matrix, (f"3/7*{pressure}", f"-{tau}")
                 ),
-                "Boundary 1/Traction": expressions(
-                    matrix, (f"-3/7*{pressure}", tau)
-                ),
+                "Boundary 1/Traction": expressions(matrix, (f"-3/7*{pressure}", tau)),
                 "Boundary 3/Displacement": expressions(matrix, (drive, "0")),
                 "Output/Points": f"{foot[0]:.17g}, {foot[1]:.17g}",
             },
@@ -214,8 +206,7 @@ def friction_scene(
         "Boundary 0/Traction": f"{0.3 * force}*{ramp}; {0.1 * force}*{ramp}^2"
         + "; 0" * (dimension - 2),
         f"Boundary {top}/Role": "clamped",
-        f"Boundary {foot}/Role": "contact",
-        f"Boundary {foot}/Friction law": "tresca",
+        **on_boundary(foot, Role="contact", Friction_law="tresca"),
         f"Boundary {foot}/Friction bound": 0.08 * force,
         "Time/Phases": f"{time}: 4",
         "Solver/Contact tolerance": 1e-10,
@@ -278,8 +269,7 @@ class Units(TestCase):
         """Where nothing but the preconditioner says how large an error is."""
         more = {
             "Solver/Linear solver": "multigrid",
-            "Boundary 2/Friction law": "none",
-            "Boundary 2/Friction bound": "",
+            **on_boundary(2, Friction_law="none", Friction_bound=""),
         }
         known = self.block(2, more)
         for stress in 1e-60, 1e-30, 1e60:
@@ -314,10 +304,7 @@ class Units(TestCase):
         elastic = {"law": "elastic"}
         for solver in "direct", "multigrid":
             with self.subTest(solver):
-                more = {
-                    "Solver/Linear solver": solver,
-                    "Time/Phases": "1e-20: 1, 1: 3",
-                }
+                more = {"Solver/Linear solver": solver, "Time/Phases": "1e-20: 1, 1: 3"}
                 ramp = self.block(2, more, ramp="t^8", **elastic)
                 known = self.block(2, more, ramp="t", load=1e20, **elastic)
                 for name in "reaction_3_x", "max_displacement", "max_von_mises":

@@ -271,10 +271,7 @@ class UniformStrain(TestCase):
                 print(f"{name}, {scheme}: errors {errors}, order {measured}")
                 # the onset of flow of perzyna is a kink within a step
                 self.assertClose(
-                    measured,
-                    expected,
-                    absolute=tolerance,
-                    what=f"{name}, {scheme}",
+                    measured, expected, absolute=tolerance, what=f"{name}, {scheme}"
                 )
 
 
@@ -307,9 +304,7 @@ class ShearLayer(TestCase):
         return abs(result["point0_x"][-1] - 0.31)
 
     def test_backward_euler_is_the_right_sum(self):
-        errors = [
-            self.check("backward Euler", n, [0] + n * [1]) for n in (20, 40, 80)
-        ]
+        errors = [self.check("backward Euler", n, [0] + n * [1]) for n in (20, 40, 80)]
         print(f"backward Euler: errors {errors}, orders {orders(errors)}")
         self.assertClose(orders(errors), 1, absolute=0.05, what="order")
 
@@ -366,7 +361,7 @@ class Slab(TestCase):
 
     def test_orders_of_all_schemes(self):
         """To the same solution: the friction force, the energies and the
-        corner at t = 1 and 2 against 512 steps of Heun, on a mesh that is coarse
+        corner at t = 1 and 2 against 256 steps of Heun, on a mesh that is coarse
         enough for many steps."""
         mesh = {"Geometry/Arguments": "16, 8 : 0, 0 : 2, 1 : true"}
         names = (
@@ -377,11 +372,11 @@ class Slab(TestCase):
             "friction_dissipation",
         )
         for law, entries in ("maxwell", mesh), ("norton", {**NORTON, **mesh}):
-            fine = self.slab("Heun", 512, **entries)
+            fine = self.slab("Heun", 256, **entries)
             scale = {name: abs(fine[name]).max() for name in names}
             for scheme in "forward Euler", "Heun", "backward Euler":
                 errors = []
-                for n in 32, 128:
+                for n in 16, 64:
                     result = self.slab(scheme, n, **entries)
                     errors.append(
                         max(
@@ -447,8 +442,8 @@ class Slab(TestCase):
     def test_three_ranks(self):
         for entries in {}, NORTON, HARDENING:
             self.compare(
-                self.slab("backward Euler", 8, **entries),
-                self.slab("backward Euler", 8, ranks=3, **entries),
+                self.slab("backward Euler", 4, **entries),
+                self.slab("backward Euler", 4, ranks=3, **entries),
             )
         self.compare(self.slab("Heun", 8), self.slab("Heun", 8, ranks=3))
 
@@ -502,19 +497,17 @@ class NonSymmetric(TestCase):
                     self.assertLess(count.max(), 11)
 
     def test_as_small_steps_of_forward_euler(self):
-        """At k = 100/r, against 50 times as many steps below 2/r."""
+        """At k = 100/r, against 60 times as many steps below 2/r."""
         for law in pressure, hardening:
             with self.subTest(law.__name__):
-                entries = law(100, 1 / 16)
-                coarse = self.slab(entries, steps=16)
-                fine = self.slab(
-                    entries, steps=1000, **{"Time/Scheme": "forward Euler"}
-                )
+                entries = law(100, 1 / 8)
+                coarse = self.slab(entries, steps=8)
+                fine = self.slab(entries, steps=480, **{"Time/Scheme": "forward Euler"})
                 self.assertGreater((coarse["k"] / coarse["step_limit"]).max(), 49)
                 for name in "point0_x", "friction_force_x", "stored_energy":
                     for t in 1, 2:
                         scale = abs(fine[name]).max()
-                        # 0.0023 is the largest, of point0_x with hardening
+                        # 0.0042 is the largest, of point0_x with hardening
                         self.assertClose(
                             coarse[name][coarse.row(t)],
                             fine[name][fine.row(t)],
@@ -553,7 +546,7 @@ class NonSymmetric(TestCase):
             more = {
                 **BACKWARD,
                 **law,
-                "Time/Phases": "0.4: 4",
+                "Time/Phases": "0.4: 3",
                 "Material/Stress history": history,
             }
             one = run("pad_adaptive", more)
@@ -571,7 +564,7 @@ class Adaptive(TestCase):
             for history in "cell means", "quadrature points":
                 more = {
                     "Time/Scheme": scheme,
-                    "Time/Phases": "0.6: 6",
+                    "Time/Phases": "0.6: 4",
                     "Material/Stress history": history,
                     **(NORTON if scheme == "backward Euler" else {}),
                 }
@@ -613,20 +606,22 @@ class Restart(TestCase):
             whole = without_wall_times(job.results / "statistics.csv")
             job.forget_after(3)
             job.run("--restart", ranks=ranks)
-            self.assertEqual(
-                whole, without_wall_times(job.results / "statistics.csv")
-            )
+            self.assertEqual(whole, without_wall_times(job.results / "statistics.csv"))
 
     def test_all_schemes(self):
         steps = {
             "Geometry/Arguments": "16, 8 : 0, 0 : 2, 1 : true",
             "Time/Phases": "1: 4, 2: 3",
         }
-        for scheme in BACKWARD, HEUN:
-            for entries in {}, NORTON if scheme is BACKWARD else {}:
-                for ranks in 1, 2:
-                    with self.subTest(f"{scheme} {entries} {ranks}"):
-                        self.check("slab", {**steps, **entries, **scheme}, ranks)
+        for scheme, entries, ranks in (
+            (BACKWARD, {}, 1),
+            (BACKWARD, NORTON, 1),
+            (BACKWARD, NORTON, 2),
+            (HEUN, {}, 1),
+            (HEUN, {}, 2),
+        ):
+            with self.subTest(f"{scheme} {entries} {ranks}"):
+                self.check("slab", {**steps, **entries, **scheme}, ranks)
 
     def test_adaptive(self):
         self.check(

@@ -28,11 +28,7 @@ SLAB = {
     },
 }
 COLUMNS = (
-    "friction_force_x",
-    "point0_x",
-    "strain_energy",
-    "stress_norm",
-    "mean_von_mises",
+    "friction_force_x", "point0_x", "strain_energy", "stress_norm", "mean_von_mises"
 )
 
 # n: strain energy, u_x(1,0), friction force on x > 1/2, last stuck node, first
@@ -102,9 +98,7 @@ class Slab(TestCase):
         k = 1/16."""
         defects = []
         for n_steps in 16, 32, 64, 128:
-            result = slab(
-                16, **{"Time/Phases": f"1: {n_steps}, 2: {n_steps}"}
-            )
+            result = slab(16, **{"Time/Phases": f"1: {n_steps}, 2: {n_steps}"})
             defects.append(abs(result["energy_balance_defect"]).max())
             total = (
                 result["stored_energy"]

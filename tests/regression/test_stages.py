@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from harness import TestCase, as_prm, main, run, run_program, scene_file
+from runs import on_boundary, with_roles
 
 # An absent material has a stiffness of 1e-6 of its own, and with it this
 # influence on the rest, relative to displacements and energies.
@@ -27,9 +28,7 @@ IN_3D = {
     "Geometry/Arguments": "2, 2, 4 : 0, 0, 0 : 1, 1, 2 : true",
     "Geometry/Material ids": "if(z > 1, 2, 1)",
     "Loads/Body force": "0; 0; -2",
-    "Boundary 2/Role": "symmetry",
-    "Boundary 4/Role": "clamped",
-    "Boundary 5/Role": "free",
+    **with_roles(symmetry=[2], clamped=[4], free=[5]),
     "Output/Points": "1, 1, 1; 0, 0, 0.5",
 }
 ALONE_IN_3D = {
@@ -39,11 +38,7 @@ ALONE_IN_3D = {
 }
 # Cells of several sizes in both blocks, and between them.
 HANGING = {"Geometry/Boundary refinements": "0: 1"}
-FRICTION = {
-    "Boundary 2/Role": "contact",
-    "Boundary 2/Friction law": "tresca",
-    "Boundary 2/Friction bound": 0.3,
-}
+FRICTION = {**on_boundary(2, Role="contact", Friction_law="tresca", Friction_bound=0.3)}
 CREEP = {
     "Material 1/Law": "maxwell",
     "Material 1/maxwell/Viscosity": 100,
@@ -241,10 +236,7 @@ class Added(TestCase):
             u = both.vector(name)
             expected = of_weight.vector(name)[-1]
             self.assertClose(
-                u[-1] - u[0],
-                expected,
-                absolute=ABSENT * abs(expected).max(),
-                what=name,
+                u[-1] - u[0], expected, absolute=ABSENT * abs(expected).max(), what=name
             )
         self.assertClose(both["energy_balance_defect"], 0, absolute=1e-12)
 
@@ -319,9 +311,7 @@ class Refused(TestCase):
             (
                 {
                     "Geometry/Boundary ids": "if(y > 1 && y < 1.999, 7, id)",
-                    "Boundary 7/Role": "clamped",
-                    "Boundary 2/Role": "free",
-                    "Boundary 0/Role": "free",
+                    **with_roles(clamped=[7], free=[2, 0]),
                 },
                 "rigid motion free from t = 1 on",
             ),

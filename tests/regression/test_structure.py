@@ -43,7 +43,7 @@ class Rooms(unittest.TestCase):
     def test_each_unit_test_is_an_entry_of_ctest(self):
         unit = SOURCE / "tests" / "unit"
         entries = re.findall(
-            r'^unit_test\(\w+\s+"([^"]+)"', (unit / "CMakeLists.txt").read_text(), re.M
+            r'^ *unit_test\(\w+\s+"([^"]+)"', (unit / "CMakeLists.txt").read_text(), re.M
         )
         filters = [one for entry in entries for one in entry.split(":")]
         suites = {

@@ -138,10 +138,7 @@ class TestCase(unittest.TestCase):
 class Fits(TestCase):
     def test_known_coefficients(self):
         for truth in (
-            PLAIN,
-            (2.0, 0.75, 3.0, 1.0),
-            (2.0, 1.0, 40.0, 2.0),
-            (0.1, 0.5, 0.3, 1.0),
+            PLAIN, (2.0, 0.75, 3.0, 1.0), (2.0, 1.0, 40.0, 2.0), (0.1, 0.5, 0.3, 1.0)
         ):
             fit = fit_error(ladders(truth))
             self.assertEqual(fit.m, 1.0)

@@ -134,10 +134,7 @@ class Times(Tables):
         )
         formula = run(
             "slab",
-            {
-                **self.CONTROL,
-                "Boundary 0/Traction": "0.1*t + if(t < 0.613, 0, 0.1); 0",
-            },
+            {**self.CONTROL, "Boundary 0/Traction": "0.1*t + if(t < 0.613, 0, 0.1); 0"},
         )
         # just before and just after
         for side in (-1, 1):

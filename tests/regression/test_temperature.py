@@ -9,7 +9,16 @@ import tempfile
 import numpy as np
 
 from harness import TestCase, main, run
-from runs import EVERY_STEP, Job, boundaries, without_wall_times
+from runs import (
+    EVERY_STEP,
+    Job,
+    boundaries,
+    elastic_moduli,
+    of_law,
+    on_boundary,
+    with_roles,
+    without_wall_times,
+)
 
 E, NU, ALPHA = 200.0, 0.3, 1e-3
 AXIS = {"Geometry/Plane model": "axisymmetric"}
@@ -21,8 +30,7 @@ def body(temperature, arguments, *roles, **more):
     return {
         "Dimension": dim,
         "Geometry/Arguments": arguments + " : true",
-        "Material/Young's modulus": E,
-        "Material/Poisson's ratio": NU,
+        **elastic_moduli(E, NU),
         "Material/Thermal expansion": ALPHA,
         "Temperature/Value": temperature,
         "Time/Phases": "1: 2",
@@ -319,10 +327,7 @@ class Cylinder(TestCase):
                     "Exact solution/Displacement": "",
                     "Exact solution/Stress": "",
                     "Geometry/Arguments": f"{n}, 1 : 1, 0 : 2, {1 / n} : true",
-                    "Material/Law": "norton",
-                    "Material/norton/Rate factor": 1e-6,
-                    "Material/norton/Exponent": 3,
-                    "Material/norton/Stress cap": 100,
+                    **of_law("norton", Rate_factor=1e-6, Exponent=3, Stress_cap=100),
                     "Time/Scheme": "backward Euler",
                     "Time/Phases": "1: 8",
                     "Output/Points": f"{self.a}, 0",
@@ -365,8 +370,7 @@ class Cylinder(TestCase):
             **self.ring(2),
             "Exact solution/Displacement": "",
             "Exact solution/Stress": "",
-            "Material/Law": "maxwell",
-            "Material/maxwell/Viscosity": 1e20,
+            **of_law("maxwell", Viscosity=1e20),
             "Time/Phases": "1: 4",
             "Mesh refinement/Strategy": "residual",
             "Mesh refinement/Every n steps": 1,
@@ -399,8 +403,7 @@ class Arrhenius(TestCase):
             {"Long-term Young's modulus": 1, "Long-term Poisson's ratio": 0.3},
         ),
         "perzyna": (
-            *("Viscosity", 2.0, False),
-            {"Yield radius": 0.1, "Hardening modulus": 0.5},
+            *("Viscosity", 2.0, False), {"Yield radius": 0.1, "Hardening modulus": 0.5}
         ),
     }
 
@@ -464,10 +467,7 @@ class Arrhenius(TestCase):
                 "Dimension": 3,
                 "Geometry/Arguments": "1, 1, 1 : 0, 0, 0 : 1, 1, 1 : true",
                 "Material/Young's modulus": 1e3,
-                "Material/Law": "norton",
-                "Material/norton/Rate factor": A,
-                "Material/norton/Exponent": n,
-                "Material/norton/Stress cap": 100,
+                **of_law("norton", Rate_factor=A, Exponent=n, Stress_cap=100),
                 "Material/Activation energy": self.Q,
                 "Material/Law temperature": self.LAW,
                 "Temperature/Value": "if(t > 0.5, 343, 303)",
@@ -534,8 +534,7 @@ class Arrhenius(TestCase):
         entries = self.scene("norton", 2)
         parsed = {k: v for k, v in entries.items() if "norton" not in k}
         parsed |= {
-            "Material/Law": "parsed",
-            "Material/parsed/Strain rate": "2*T/300*min(sigma_eq, 10)^3",
+            **of_law("parsed", Strain_rate="2*T/300*min(sigma_eq, 10)^3"),
             "Temperature/Value": 300,
         }
         a, b = compute(entries), compute(parsed)
@@ -600,8 +599,7 @@ class Times(TestCase):
         "6, 6 : 0, 0 : 1, 1",
         *("clamped", "free", "free", "free"),
         **{
-            "Material/Law": "maxwell",
-            "Material/maxwell/Viscosity": 100,
+            **of_law("maxwell", Viscosity=100),
             "Time/Phases": "1: 10",
             "Time/Scheme": "backward Euler",
             "Step control/Tolerance": 0.02,
@@ -704,12 +702,7 @@ class Contact(TestCase):
     """A block that is heated between two rigid platens."""
 
     def block(self, friction, **more):
-        platen = {
-            "Role": "contact",
-            "Contact law": "unilateral",
-            "Gap": 0,
-            **friction,
-        }
+        platen = {"Role": "contact", "Contact law": "unilateral", "Gap": 0, **friction}
         return body(
             "300 + 100*t",
             "8, 8 : 0, 0 : 1, 1",
@@ -787,11 +780,8 @@ class Contact(TestCase):
                 "Geometry/Arguments": "6, 6 : 0, 0 : 1, 1 : true | "
                 "6, 6 : 0, 1 : 1, 2 : true",
                 **boundaries("symmetry", "free", "symmetry", "free"),
-                "Boundary 20/Role": "symmetry",
-                "Boundary 21/Role": "free",
-                "Boundary 22/Role": "contact",
-                "Boundary 22/Against": 3,
-                "Boundary 22/Contact law": "bilateral",
+                **with_roles(symmetry=[20], free=[21]),
+                **on_boundary(22, Role="contact", Against=3, Contact_law="bilateral"),
                 "Boundary 22/Friction law": "glued",
                 "Boundary 23/Role": "free",
             }
@@ -801,11 +791,7 @@ class Contact(TestCase):
 
 
 class Refusals(TestCase):
-    creep = {
-        "Material/Law": "norton",
-        "Material/norton/Stress cap": 10,
-        "Material/Activation energy": 5e4,
-    }
+    creep = {**of_law("norton", Stress_cap=10), "Material/Activation energy": 5e4}
 
     def refused(self, *words, **entries):
         scene = body("300", *SQUARE)

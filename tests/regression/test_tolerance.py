@@ -4,7 +4,16 @@
 import numpy as np
 
 from harness import TestCase, main, run
-from runs import EVERY_STEP, Job, manufactured, without_wall_times
+from runs import (
+    EVERY_STEP,
+    Job,
+    elastic_moduli,
+    manufactured,
+    of_law,
+    on_boundary,
+    with_roles,
+    without_wall_times,
+)
 
 # What laws have by default; the scenes of the paper keep cell means.
 POINTS = {"Material/Stress history": "quadrature points"}
@@ -106,9 +115,7 @@ class Meshes(TestCase):
         several = run("slab", {**COARSE_SLAB, **to(0.04)}, ranks=3)
         self.assertEqual(list(several["cells"]), list(self.slab["cells"]))
         self.assertClose(several["t"], self.slab["t"], 1e-6)
-        self.assertClose(
-            several["estimate_total"], self.slab["estimate_total"], 1e-5
-        )
+        self.assertClose(several["estimate_total"], self.slab["estimate_total"], 1e-5)
 
 
 class Rounding(TestCase):
@@ -119,13 +126,9 @@ class Rounding(TestCase):
         "Geometry/Global refinements": 1,
         "Material/Young's modulus": 1e6,
         "Material/Law": "elastic",
-        "Boundary 0/Role": "free",
-        "Boundary 1/Role": "free",
-        "Boundary 2/Role": "contact",
-        "Boundary 2/Contact law": "unilateral",
-        "Boundary 2/Gap": "0.003*(1 - t)",
-        "Boundary 2/Friction law": "coulomb",
-        "Boundary 2/Friction coefficient": 0.3,
+        **with_roles(free=[0, 1]),
+        **on_boundary(2, Role="contact", Contact_law="unilateral", Gap="0.003*(1 - t)"),
+        **on_boundary(2, Friction_law="coulomb", Friction_coefficient=0.3),
         "Boundary 3/Role": "displacement",
         "Boundary 3/Displacement": "0.006*sin(2*t); -0.012*sin(2*t)",
         "Time/Phases": "0.5: 8",
@@ -140,17 +143,12 @@ class Rounding(TestCase):
                 "Dimension": 3,
                 "Geometry/Generator": "truncated_cone",
                 "Geometry/Arguments": "0.6 : 0.4 : 1.0",
-                "Material/Young's modulus": 0.8,
-                "Material/Poisson's ratio": 0.45,
-                "Material/Law": "maxwell",
-                "Material/maxwell/Viscosity": 2,
+                **elastic_moduli(0.8, 0.45),
+                **of_law("maxwell", Viscosity=2),
                 "Initial state/Stress": "-9e-5; -9e-5; -9e-5; 0; 0; 0",
-                "Boundary 0/Role": "clamped",
-                "Boundary 1/Role": "clamped",
-                "Boundary 2/Role": "contact",
-                "Boundary 2/Contact law": "unilateral",
-                "Boundary 2/Friction law": "coulomb",
-                "Boundary 2/Friction coefficient": 0.3,
+                **with_roles(clamped=[0, 1]),
+                **on_boundary(2, Role="contact", Contact_law="unilateral"),
+                **on_boundary(2, Friction_law="coulomb", Friction_coefficient=0.3),
                 "Solver/Coulomb pressure": "lagged",
                 "Solver/Linear solver": solver,
                 "Time/Scheme": "backward Euler",
@@ -183,12 +181,9 @@ class Rounding(TestCase):
             "Geometry/Generator": "subdivided_hyper_rectangle",
             "Geometry/Arguments": "4, 1 : 0, 0 : 1, 0.06 : true",
             "Boundary 0/Role": "free",
-            "Boundary 1/Role": "traction",
-            "Boundary 1/Traction": "-1.4e-5*t; 0",
-            "Boundary 2/Role": "contact",
-            "Boundary 2/Contact law": "unilateral",
-            "Boundary 2/Friction law": "coulomb",
-            "Boundary 2/Friction coefficient": 0.3,
+            **on_boundary(1, Role="traction", Traction="-1.4e-5*t; 0"),
+            **on_boundary(2, Role="contact", Contact_law="unilateral"),
+            **on_boundary(2, Friction_law="coulomb", Friction_coefficient=0.3),
             "Boundary 2/Gap": "1e-4*(1 + sin(9*x))",
             "Boundary 3/Role": "free",
             "Loads/Body force": "0; -0.0036*t",
@@ -263,9 +258,7 @@ class Kinks(TestCase):
 
     def test_on_3_ranks(self):
         scene = {**self.SCENE, "Time/Phases": "1.86: 9", **to(0.5)}
-        several = run(
-            "slab", {**scene, "Solver/Linear solver": "multigrid"}, ranks=3
-        )
+        several = run("slab", {**scene, "Solver/Linear solver": "multigrid"}, ranks=3)
         self.assertIn(0.93, list(several["t"]))
 
 
@@ -279,8 +272,7 @@ class Restart(TestCase):
                     again.forget_after(n)
                     result = again.run("--restart", ranks=ranks)
                     self.assertEqual(
-                        without_wall_times(result.directory / "statistics.csv"),
-                        rows,
+                        without_wall_times(result.directory / "statistics.csv"), rows
                     )
 
     def test_bit_by_bit(self):

@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from harness import COUPLED, TestCase, main, run, scene_file
-from runs import Job
+from runs import Job, on_boundary, with_roles
 
 SOLVERS = ("direct", "multigrid", "algebraic multigrid")
 TIGHT = {"Solver/Contact tolerance": 1e-12}
@@ -101,19 +101,13 @@ class Blocks(TestCase):
             "5, 4 : 0, 1 : 1, 2 : true | 6, 3 : 0, 2 : 1, 3 : true",
             "Material 2/Young's modulus": 4,
             "Material 2/Poisson's ratio": nu,
-            "Boundary 2/Role": "contact",
-            "Boundary 2/Contact law": "unilateral",
+            **on_boundary(2, Role="contact", Contact_law="unilateral"),
             "Boundary 2/Friction law": "none",
-            "Boundary 23/Role": "free",
-            "Boundary 23/Pressure": "",
-            "Boundary 40/Role": "symmetry",
-            "Boundary 41/Role": "free",
-            "Boundary 42/Role": "contact",
-            "Boundary 42/Against": 23,
-            "Boundary 42/Contact law": "unilateral",
+            **on_boundary(23, Role="free", Pressure=""),
+            **with_roles(symmetry=[40], free=[41]),
+            **on_boundary(42, Role="contact", Against=23, Contact_law="unilateral"),
             "Boundary 42/Friction law": "none",
-            "Boundary 43/Role": "traction",
-            "Boundary 43/Pressure": "0.01*t",
+            **on_boundary(43, Role="traction", Pressure="0.01*t"),
             "Output/Points": "1, 3",
         }
         for ranks in 1, 3:
@@ -174,8 +168,7 @@ class Blocks(TestCase):
                 {
                     **TIGHT,
                     "Geometry/Boundary refinements": "0: 1",
-                    "Boundary 20/Role": "free",
-                    "Boundary 21/Role": "symmetry",
+                    **with_roles(free=[20], symmetry=[21]),
                     "Output/Points": f"0, {middle}0.99; 0, {middle}1.01",
                 },
             )
@@ -233,10 +226,7 @@ class Blocks(TestCase):
         self.assertClose(result["point0_z"][-1], -0.015, 1e-3)
 
 
-GLUED = {
-    "Boundary 3/Contact law": "bilateral",
-    "Boundary 3/Friction law": "glued",
-}
+GLUED = {**on_boundary(3, Contact_law="bilateral", Friction_law="glued")}
 SIDE_BY_SIDE = "6, 4 : 0, 0 : 1, 1 : true | 6, 4 : 0, 1 : 1, 2 : true"
 
 
@@ -246,12 +236,7 @@ class Limits(TestCase):
     def pair_and_one(self, cells, height, load, **more):
         """Two glued blocks of these cells and this height each, and one of both."""
         n, m = cells
-        common = {
-            **TIGHT,
-            "Boundary 0/Role": "free",
-            "Boundary 2/Role": "clamped",
-            **more,
-        }
+        common = {**TIGHT, **with_roles(free=[0], clamped=[2]), **more}
         two = run(
             "two_blocks_2d",
             {
@@ -270,9 +255,7 @@ class Limits(TestCase):
                 **common,
                 "Geometry/Generator": "subdivided_hyper_rectangle",
                 "Geometry/Arguments": f"{n}, {2 * m} : 0, 0 : 1, {2 * height} : true",
-                "Boundary 3/Role": "traction",
-                "Boundary 3/Contact law": "not given",
-                "Boundary 3/Against": "",
+                **on_boundary(3, Role="traction", Contact_law="not given", Against=""),
                 **{f"Boundary 3/{name}": value for name, value in load.items()},
             },
             text="\n\n".join(self.parts_of_one_body()),
@@ -378,8 +361,7 @@ class Limits(TestCase):
         a reaction, is that of unilateral contact, where it is a multiplier; that of a
         point, too. With hanging nodes, on ranks."""
         for dim, contact, top, column, ranks in (
-            (2, 3, 23, "point0_y", 1),
-            (3, 5, 25, "point0_z", 3),
+            (2, 3, 23, "point0_y", 1), (3, 5, 25, "point0_z", 3)
         ):
             bilateral, unilateral = (
                 run(
@@ -413,8 +395,7 @@ class Limits(TestCase):
         """By symmetry, with friction that has nothing to do; contact opens."""
         equal = {
             **TIGHT,
-            "Boundary 3/Friction law": "coulomb",
-            "Boundary 3/Friction coefficient": 0.5,
+            **on_boundary(3, Friction_law="coulomb", Friction_coefficient=0.5),
             "Material 1/Young's modulus": 1,
             "Material 1/Poisson's ratio": 0.3,
         }
@@ -424,10 +405,8 @@ class Limits(TestCase):
             {
                 **equal,
                 "Geometry/Arguments": SIDE_BY_SIDE,
-                "Boundary 2/Role": "displacement",
-                "Boundary 2/Displacement": f"free; {way}",
-                "Boundary 23/Role": "displacement",
-                "Boundary 23/Displacement": f"free; -{way}",
+                **on_boundary(2, Role="displacement", Displacement=f"free; {way}"),
+                **on_boundary(23, Role="displacement", Displacement=f"free; -{way}"),
             },
         )
         one = run(
@@ -438,8 +417,7 @@ class Limits(TestCase):
                 "Geometry/Generator": "subdivided_hyper_rectangle",
                 "Geometry/Arguments": "6, 4 : 0, 0 : 1, 1 : true",
                 "Geometry/Material ids": "0",
-                "Boundary 2/Role": "displacement",
-                "Boundary 2/Displacement": f"free; {way}",
+                **on_boundary(2, Role="displacement", Displacement=f"free; {way}"),
                 "Boundary 3/Against": "",
                 "Output/Points": "0.5, 1; 0.5, 1",
             },
@@ -487,8 +465,7 @@ class Limits(TestCase):
             base, law = (2, 3) if dim == 2 else (4, 5)
             turn = "0.01*t*(y - 0.3); -0.01*t*x"
             changes = {
-                f"Boundary {law}/Contact law": "bilateral",
-                f"Boundary {law}/Friction law": "glued",
+                **on_boundary(law, Contact_law="bilateral", Friction_law="glued"),
                 f"Boundary {base}/Role": "displacement",
                 f"Boundary {base}/Displacement": turn
                 + (" + 0.02*t*z; -0.02*t*y" if dim == 3 else ""),
@@ -518,8 +495,7 @@ class Stages(TestCase):
             f"two_blocks_{dim}d",
             {
                 **TIGHT,
-                f"Boundary {lower}/Role": "free",
-                f"Boundary {lower}/Against": "",
+                **on_boundary(lower, Role="free", Against=""),
                 **{f"Boundary {upper}/{k}": v for k, v in contact.items()},
                 f"Boundary {top}/Pressure": 0,
                 "Loads/Body force": "0; " * (dim - 1) + "-0.01",
@@ -535,9 +511,7 @@ class Stages(TestCase):
         """A body that comes rests on the other one with its weight from then on, and
         takes it along when it goes; with hanging nodes, on ranks."""
         for dim, ranks, solver in (
-            (2, 1, "direct"),
-            (2, 2, "multigrid"),
-            (3, 3, "algebraic multigrid"),
+            (2, 1, "direct"), (2, 2, "multigrid"), (3, 3, "algebraic multigrid")
         ):
             down = "xyz"[dim - 1]
             common = {
@@ -561,10 +535,7 @@ class Stages(TestCase):
                 # what is added once floated in that instant: 0.05
                 self.check_identities(result, 1e-8)
             # the lower block knows no more than the force, and a little of friction
-            alone, loaded = (
-                comes[f"point1_{down}"][0],
-                always[f"point1_{down}"][-1],
-            )
+            alone, loaded = (comes[f"point1_{down}"][0], always[f"point1_{down}"][-1])
             self.assertClose(goes[f"point1_{down}"][-1], alone, absolute=1e-7)
             self.assertClose(comes[f"point1_{down}"][-1], loaded, relative=0.02)
             self.assertGreater(abs(loaded / alone), 1.5)
@@ -583,17 +554,16 @@ class Stages(TestCase):
                 "Material 2/Young's modulus": 2,
                 "Material 2/Poisson's ratio": 0.2,
             }
-            for when, order in (("Removed at", 1), ("Added at", -1)):
-                for ranks in 1, 3:
-                    result = self.stages(2, ranks, **part, **{f"Material 2/{when}": 1})
-                    # an absent cell weighs on the others with its stiffness
-                    self.assertClose(
-                        result["contact_force_y"][1:3], forces[::order], absolute=1e-7
-                    )
-                    self.assertClose(
-                        result["contact_area"][1:3], (1, area)[::order], absolute=1e-12
-                    )
-                    self.check_identities(result, 1e-7)
+            for when, order, ranks in (("Removed at", 1, 1), ("Added at", -1, 3)):
+                result = self.stages(2, ranks, **part, **{f"Material 2/{when}": 1})
+                # an absent cell weighs on the others with its stiffness
+                self.assertClose(
+                    result["contact_force_y"][1:3], forces[::order], absolute=1e-7
+                )
+                self.assertClose(
+                    result["contact_area"][1:3], (1, area)[::order], absolute=1e-12
+                )
+                self.check_identities(result, 1e-7)
 
     def test_stages_of_contact_on_changing_meshes(self):
         """Cells and forces are the same on ranks, and nothing is said of a face whose
@@ -632,17 +602,13 @@ class Slip(TestCase):
             {
                 "Geometry/Arguments": "8, 4 : 0, 0 : 2, 1 : true | "
                 "5, 4 : 0.5, 1 : 1.5, 2 : true",
-                "Boundary 0/Role": "free",
-                "Boundary 2/Role": "clamped",
-                f"Boundary {primary}/Role": "free",
-                f"Boundary {primary}/Against": "",
-                f"Boundary {secondary}/Role": "contact",
-                f"Boundary {secondary}/Against": primary,
+                **with_roles(free=[0], clamped=[2]),
+                **on_boundary(primary, Role="free", Against=""),
+                **on_boundary(secondary, Role="contact", Against=primary),
                 f"Boundary {secondary}/Contact law": "unilateral",
                 f"Boundary {secondary}/Friction law": "coulomb",
                 f"Boundary {secondary}/Friction coefficient": 0.3,
-                "Boundary 20/Role": "free",
-                "Boundary 23/Role": "displacement",
+                **with_roles(free=[20], displacement=[23]),
                 "Boundary 23/Displacement": "0.01*max(t - 1, 0); -0.01*min(t, 1)",
                 "Time/Phases": "1: 2, 2: 5",
                 "Solver/Contact tolerance": 1e-9,
@@ -702,9 +668,7 @@ class Slip(TestCase):
         for ranks in 1, 2:
             faces = [
                 run(
-                    "two_blocks_3d",
-                    {**TIGHT, "Output/Fields every": 1},
-                    ranks=ranks,
+                    "two_blocks_3d", {**TIGHT, "Output/Fields every": 1}, ranks=ranks
                 ).fields(series)
                 for series in ("contact", "opposite")
             ]
@@ -762,19 +726,15 @@ class Slip(TestCase):
                 "Geometry/Arguments": "64, 32 : -1, -1 : 1, 0 : true | "
                 "48, 24 : -1, 0.5 : 1, 1.5 : true",
                 "Geometry/Coordinates": profiles,
-                "Boundary 0/Role": "free",
-                "Boundary 2/Role": "clamped",
+                **with_roles(free=[0], clamped=[2]),
                 "Boundary 3/Foundation normal": "0, 1",
                 "Boundary 20/Role": "free",
-                "Boundary 23/Role": "displacement",
-                "Boundary 23/Displacement": "0; -0.02*t",
+                **on_boundary(23, Role="displacement", Displacement="0; -0.02*t"),
                 "Output/Points": "",
             },
         )
         force = result["contact_force_y"][-1]
-        modulus, radius = 1 / ((1 - 0.3**2) / 1 + (1 - 0.2**2) / 2), 1 / (
-            1 / 2 + 1 / 4
-        )
+        modulus, radius = 1 / ((1 - 0.3**2) / 1 + (1 - 0.2**2) / 2), 1 / (1 / 2 + 1 / 4)
         pressure = np.sqrt(force * modulus / np.pi / radius)
         width = 2 * np.sqrt(4 * force * radius / np.pi / modulus)
         # measured: 0.4 % more, for bodies that are 7 widths deep
@@ -795,11 +755,9 @@ class Reference(TestCase):
         """Against its own fields a run has no error; the other body has the
         multipliers with the other sign."""
         scene = {
-            "Boundary 3/Friction law": "coulomb",
-            "Boundary 3/Friction coefficient": 0.3,
+            **on_boundary(3, Friction_law="coulomb", Friction_coefficient=0.3),
             "Boundary 20/Role": "free",
-            "Boundary 23/Role": "displacement",
-            "Boundary 23/Displacement": "0.003*t; -0.01*t",
+            **on_boundary(23, Role="displacement", Displacement="0.003*t; -0.01*t"),
             "Boundary 23/Pressure": 0,
             "Output/Points": "",
         }
@@ -826,13 +784,10 @@ class Known(TestCase):
                 "Geometry/Coordinates": PARABOLAS,
                 "Material 1/Young's modulus": 1,
                 "Material 1/Poisson's ratio": 0.3,
-                "Boundary 0/Role": "free",
-                "Boundary 2/Role": "clamped",
-                "Boundary 3/Foundation normal": "0, 1",
-                "Boundary 3/Friction law": "coulomb",
+                **with_roles(free=[0], clamped=[2]),
+                **on_boundary(3, Foundation_normal="0, 1", Friction_law="coulomb"),
                 "Boundary 3/Friction coefficient": friction,
-                "Boundary 20/Role": "free",
-                "Boundary 23/Role": "displacement",
+                **with_roles(free=[20], displacement=[23]),
                 "Boundary 23/Displacement": "0.004*max(t - 1, 0); -0.01*min(t, 1)",
                 "Output/Points": "",
                 "Time/Phases": "1: 1, 2: 4",
@@ -860,8 +815,7 @@ class Known(TestCase):
                 "Geometry/Coordinates": PARABOLAS,
                 "Boundary 2/Role": "clamped",
                 "Boundary 3/Foundation normal": "0, 1",
-                "Boundary 23/Role": "displacement",
-                "Boundary 23/Displacement": "0; -0.01*t",
+                **on_boundary(23, Role="displacement", Displacement="0; -0.01*t"),
                 "Output/Points": "",
             },
         )
@@ -887,16 +841,11 @@ class Known(TestCase):
                 "Material 1/Young's modulus": 1,
                 "Material 1/Poisson's ratio": 0.3,
                 "Boundary 2/Role": "clamped",
-                "Boundary 3/Role": "free",
-                "Boundary 3/Against": "",
-                "Boundary 3/Contact law": "not given",
+                **on_boundary(3, Role="free", Against="", Contact_law="not given"),
                 "Boundary 3/Friction law": "not given",
-                "Boundary 22/Role": "contact",
-                "Boundary 22/Against": 3,
-                "Boundary 22/Contact law": "unilateral",
+                **on_boundary(22, Role="contact", Against=3, Contact_law="unilateral"),
                 "Boundary 22/Friction law": "none",
-                "Boundary 23/Role": "displacement",
-                "Boundary 23/Displacement": "free; -0.01*t",
+                **on_boundary(23, Role="displacement", Displacement="free; -0.01*t"),
                 "Output/Points": "",
                 "Output/Fields every": 1,
             },
@@ -914,9 +863,7 @@ class Known(TestCase):
         bar is right about them: against a mesh that is 4 and 8 times finer."""
         load = {
             **GLUED,
-            "Boundary 1/Role": "symmetry",
-            "Boundary 21/Role": "symmetry",
-            "Boundary 2/Role": "clamped",
+            **with_roles(symmetry=[1, 21], clamped=[2]),
             "Boundary 23/Pressure": "0.01*t*(1 + cos(pi*x))",
             "Error control/Error bar": "true",
         }
@@ -970,8 +917,7 @@ class Refused(TestCase):
             ({"Boundary 3/Against": 1}, "has nodes in common with boundary 1"),
             (
                 {
-                    "Boundary 3/Friction law": "tresca",
-                    "Boundary 3/Friction bound": 1,
+                    **on_boundary(3, Friction_law="tresca", Friction_bound=1),
                     "Boundary 3/Foundation motion": "t; 0",
                 },
                 "another body is there",

@@ -86,9 +86,7 @@ class Steps(TestCase):
         """Slipping and sticking parts of a face under a load that stays."""
         overrides = {**PUSHED, "Material/Law": "elastic"}
         for solver in "direct", "multigrid":
-            result = self.compare(
-                "slab", {**overrides, "Solver/Linear solver": solver}
-            )
+            result = self.compare("slab", {**overrides, "Solver/Linear solver": solver})
             self.assertGreater(result["slip_area"][2], 0)
             self.assertFalse(result["slip_area"][IS_HELD].any())
         self.compare("slab", overrides, ranks=2)

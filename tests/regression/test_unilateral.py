@@ -13,6 +13,7 @@ import numpy as np
 import independent_contact
 import independent_pair
 from harness import TestCase, main, run
+from runs import elastic_moduli, of_law, on_boundary, with_roles
 
 CONTACT_LAWS = {
     "none": {"Friction law": "none"},
@@ -91,10 +92,7 @@ class Reference(TestCase):
                     for d in range(dim):
                         u = result[f"{point}_{'xyz'[d]}"][i]
                         self.assertClose(
-                            u,
-                            step.u[node, d],
-                            absolute=tolerance * length,
-                            what=point,
+                            u, step.u[node, d], absolute=tolerance * length, what=point
                         )
                 opening = step.gap - step.u[: len(step.p), -1] * -1
                 gap = max(opening.max(), 0)
@@ -171,16 +169,11 @@ class Held(TestCase):
         "Geometry/Generator": "subdivided_hyper_rectangle",
         "Geometry/Arguments": "16, 8 : 0, 0 : 2, 1 : true",
         "Material/Law": "elastic",
-        "Boundary 0/Role": "traction",
-        "Boundary 0/Traction": "0.004*max(0, t - 0.3); 0",
+        **on_boundary(0, Role="traction", Traction="0.004*max(0, t - 0.3); 0"),
         "Boundary 1/Role": "free",
-        "Boundary 2/Role": "contact",
-        "Boundary 2/Contact law": "unilateral",
-        "Boundary 2/Gap": 0.1,
-        "Boundary 2/Friction law": "coulomb",
-        "Boundary 2/Friction coefficient": 0.3,
-        "Boundary 3/Role": "traction",
-        "Boundary 3/Traction": "0; -0.01*(x - 0.4)*min(1, 5*t)",
+        **on_boundary(2, Role="contact", Contact_law="unilateral", Gap=0.1),
+        **on_boundary(2, Friction_law="coulomb", Friction_coefficient=0.3),
+        **on_boundary(3, Role="traction", Traction="0; -0.01*(x - 0.4)*min(1, 5*t)"),
         "Time/Phases": "1: 5",
     }
 
@@ -221,15 +214,11 @@ class Held(TestCase):
             "Geometry/Arguments": "2, 2, 1 : 0, 0, 0 : 2, 2, 1 : true",
             "Boundary 0/Traction": "0.002*max(0, t - 0.3); 0; 0",
             "Boundary 2/Role": "free",
-            "Boundary 3/Role": "traction",
-            "Boundary 3/Traction": "0; -0.001*max(0, t - 0.3); 0",
-            "Boundary 4/Role": "contact",
-            "Boundary 4/Contact law": "unilateral",
-            "Boundary 4/Gap": "0.05*(x^2 + y^2)",
-            "Boundary 4/Friction law": "coulomb",
+            **on_boundary(3, Role="traction", Traction="0; -0.001*max(0, t - 0.3); 0"),
+            **on_boundary(4, Role="contact", Contact_law="unilateral"),
+            **on_boundary(4, Gap="0.05*(x^2 + y^2)", Friction_law="coulomb"),
             "Boundary 4/Friction coefficient": 0.5,
-            "Boundary 5/Role": "traction",
-            "Boundary 5/Traction": "0; 0; -0.01*min(1, 5*t)",
+            **on_boundary(5, Role="traction", Traction="0; 0; -0.01*min(1, 5*t)"),
             "Mesh refinement/Strategy": "residual",
             "Mesh refinement/Maximal level": 2,
         }
@@ -252,14 +241,10 @@ class Held(TestCase):
             "Geometry/Arguments": "40, 2 : -10, 0 : 10, 0.5 : true",
             "Material/Young's modulus": 1000,
             "Material/Law": "elastic",
-            "Boundary 0/Role": "free",
-            "Boundary 1/Role": "free",
-            "Boundary 2/Role": "contact",
-            "Boundary 2/Contact law": "unilateral",
-            "Boundary 2/Friction law": "coulomb",
-            "Boundary 2/Friction coefficient": 0.3,
-            "Boundary 3/Role": "traction",
-            "Boundary 3/Traction": "0; 0.001*exp(-(x/2)^2)*t",
+            **with_roles(free=[0, 1]),
+            **on_boundary(2, Role="contact", Contact_law="unilateral"),
+            **on_boundary(2, Friction_law="coulomb", Friction_coefficient=0.3),
+            **on_boundary(3, Role="traction", Traction="0; 0.001*exp(-(x/2)^2)*t"),
             "Loads/Body force": "0; -0.0005*min(1, 10*t)",
             "Solver/Coulomb pressure": "fixed point",
             "Time/Phases": "1: 4",
@@ -300,8 +285,7 @@ class Held(TestCase):
             "lifted_beam_2d",
             {
                 **mesh(coarse),
-                "Boundary 0/Displacement": f"0; {lift[-1]!r}*t^4",
-                "Boundary 0/Traction": "0; 0",
+                **on_boundary(0, Displacement=f"0; {lift[-1]!r}*t^4", Traction="0; 0"),
             },
         )
         self.assertClose(by_lift["reaction_0_y"][-1], 2 / 3 * 0.016, relative=2e-3)
@@ -316,8 +300,7 @@ class Held(TestCase):
                     {
                         "Boundary 0/Role": "free",
                         "Boundary 2/Contact law": "normal compliance",
-                        "Boundary 2/Compliance": stiffness,
-                        "Boundary 2/Gap": 0,
+                        **on_boundary(2, Compliance=stiffness, Gap=0),
                         "Material/Poisson's ratio": 0,
                         "Boundary 3/Traction": f"0; -{load}*t",
                     }
@@ -335,12 +318,10 @@ class Held(TestCase):
                     compliance = 12000 * stiffness / 0.25
                     block = {
                         "Geometry/Arguments": "32, 4 : 0, 0 : 8, 1 : true",
-                        "Material/Young's modulus": 12000,
-                        "Material/Poisson's ratio": 0,
+                        **elastic_moduli(12000, 0),
                         "Boundary 0/Role": "symmetry",
                         "Boundary 2/Contact law": "normal compliance",
-                        "Boundary 2/Compliance": compliance,
-                        "Boundary 2/Friction law": "none",
+                        **on_boundary(2, Compliance=compliance, Friction_law="none"),
                         "Boundary 2/Gap": 0,
                         "Boundary 3/Traction": f"0; -{0.2 * compliance}*t",
                         "Solver/Linear solver": solver,
@@ -348,8 +329,7 @@ class Held(TestCase):
                     }
                     entries = {**self.BLOCK, **block}
                     for name in (
-                        "Boundary 0/Traction",
-                        "Boundary 2/Friction coefficient",
+                        "Boundary 0/Traction", "Boundary 2/Friction coefficient"
                     ):
                         entries.pop(name)
                     result = run("bed", entries, ranks, "")
@@ -366,21 +346,16 @@ class Held(TestCase):
         bed = {
             "Geometry/Arguments": "2, 1 : 0, 0 : 1, 0.141 : true",
             "Geometry/Boundary ids": "if(id == 3 && x > 0.5, 7, id)",
-            "Material/Young's modulus": 0.7094,
-            "Material/Poisson's ratio": -0.5,
-            "Material/Law": "maxwell",
-            "Material/maxwell/Viscosity": 5.416,
+            **elastic_moduli(0.7094, -0.5),
+            **of_law("maxwell", Viscosity=5.416),
             "Boundary 0/Role": "symmetry",
-            "Boundary 1/Role": "traction",
-            "Boundary 1/Traction": "-2.895e-06; 0",
-            "Boundary 2/Role": "contact",
-            "Boundary 2/Friction law": "none",
+            **on_boundary(1, Role="traction", Traction="-2.895e-06; 0"),
+            **on_boundary(2, Role="contact", Friction_law="none"),
             "Boundary 2/Contact law": "normal compliance",
             "Boundary 2/Compliance": "1.539e-08*(1 + x^2)",
             "Boundary 2/Gap": "7.04e-06*cos(7*x) - 0.0001269*sin(20*t)",
             "Boundary 3/Role": "free",
-            "Boundary 7/Role": "traction",
-            "Boundary 7/Traction": "0; -0.0001106",
+            **on_boundary(7, Role="traction", Traction="0; -0.0001106"),
             "Initial state/Equilibrate": "true",
             "Loads/Body force": "0; -0.0006672",
             "Time/Phases": "0.5: 1, 1.5: 5, 1.75: 8",
@@ -431,16 +406,13 @@ class Held(TestCase):
         slab = {
             "Geometry/Generator": "subdivided_hyper_rectangle",
             "Geometry/Global refinements": 1,
-            "Boundary 0/Role": "symmetry",
-            "Boundary 1/Role": "free",
-            "Boundary 2/Role": "contact",
-            "Boundary 2/Contact law": "unilateral",
+            **with_roles(symmetry=[0], free=[1]),
+            **on_boundary(2, Role="contact", Contact_law="unilateral"),
             "Boundary 2/Friction law": "tresca",
             "Boundary 2/Friction bound": "0.0031*(x < 0.3 ? 1 : 0.05)",
             "Boundary 2/Gap": "0.000655*(x - 0.5)^2",
             "Boundary 2/Foundation displacement": "-0.0025*t",
-            "Boundary 3/Role": "traction",
-            "Boundary 3/Traction": "0; -0.0009*t^2",
+            **on_boundary(3, Role="traction", Traction="0; -0.0009*t^2"),
             "Solver/Contact tolerance": 1e-8,
             "Time/Phases": "0.5: 2",
         }
@@ -468,14 +440,10 @@ class Held(TestCase):
             "Geometry/Generator": "subdivided_hyper_rectangle",
             "Geometry/Arguments": "7, 2 : 0, 0 : 1, 0.0351 : true",
             "Geometry/Global refinements": 1,
-            "Material/Young's modulus": 0.6748,
-            "Material/Poisson's ratio": 0.4999,
-            "Boundary 0/Role": "symmetry",
-            "Boundary 1/Role": "free",
-            "Boundary 2/Role": "contact",
-            "Boundary 2/Contact law": "unilateral",
-            "Boundary 2/Friction law": "none",
-            "Boundary 2/Gap": 2.4e-5,
+            **elastic_moduli(0.6748, 0.4999),
+            **with_roles(symmetry=[0], free=[1]),
+            **on_boundary(2, Role="contact", Contact_law="unilateral"),
+            **on_boundary(2, Friction_law="none", Gap=2.4e-5),
             "Boundary 3/Role": "traction",
             "Boundary 3/Traction": "0; -4.3e-7*t*(x > 0.1429 ? 1 : 0)",
             "Time/Phases": "1: 1",
@@ -496,18 +464,13 @@ class Held(TestCase):
             "Geometry/Generator": "subdivided_hyper_rectangle",
             "Geometry/Arguments": "2, 1 : 0, 0 : 1, 0.238 : true",
             "Geometry/Global refinements": 1,
-            "Material/Young's modulus": 2.358,
-            "Material/Poisson's ratio": 0.4999,
-            "Boundary 0/Role": "symmetry",
-            "Boundary 1/Role": "free",
-            "Boundary 2/Role": "contact",
-            "Boundary 2/Contact law": "normal compliance",
+            **elastic_moduli(2.358, 0.4999),
+            **with_roles(symmetry=[0], free=[1]),
+            **on_boundary(2, Role="contact", Contact_law="normal compliance"),
             "Boundary 2/Compliance": "0.4795*(1.5 + sin(7*x))",
-            "Boundary 2/Friction law": "coulomb",
-            "Boundary 2/Friction coefficient": 0.2,
+            **on_boundary(2, Friction_law="coulomb", Friction_coefficient=0.2),
             "Boundary 2/Gap": "0.001237*x^2",
-            "Boundary 3/Role": "traction",
-            "Boundary 3/Traction": "0; -0.002582*t",
+            **on_boundary(3, Role="traction", Traction="0; -0.002582*t"),
             "Time/Phases": "1: 2",
             "Solver/Contact tolerance": 1e-8,
         }
@@ -531,14 +494,9 @@ class Held(TestCase):
             "Material 1/Law": "maxwell",
             "Material 1/maxwell/Viscosity": "0.008126*(2 + x^2)",
             "Material 2/Young's modulus": 0.8888e5,
-            "Boundary 0/Role": "symmetry",
-            "Boundary 1/Role": "free",
-            "Boundary 2/Role": "symmetry",
-            "Boundary 3/Role": "free",
-            "Boundary 4/Role": "contact",
-            "Boundary 4/Contact law": "unilateral",
-            "Boundary 4/Gap": "7.707e-5*x^2 - 1.061e-4*t^2",
-            "Boundary 4/Friction law": "tresca",
+            **with_roles(symmetry=[0, 2], free=[1, 3]),
+            **on_boundary(4, Role="contact", Contact_law="unilateral"),
+            **on_boundary(4, Gap="7.707e-5*x^2 - 1.061e-4*t^2", Friction_law="tresca"),
             "Boundary 4/Friction bound": "3.861e-5*abs(sin(7*t))",
             "Boundary 5/Role": "free",
             "Loads/Body force": "0; 0; -0.0002962*min(4*t, 1)",
@@ -574,8 +532,7 @@ class Held(TestCase):
         the step before is told to be that."""
         belt = {
             "Boundary 0/Role": "free",
-            "Boundary 2/Gap": 0,
-            "Boundary 2/Foundation motion": "t; 0",
+            **on_boundary(2, Gap=0, Foundation_motion="t; 0"),
             "Boundary 3/Traction": "0; -0.01*max(0, t - 0.6)",
         }
         # The step in which contact begins has no friction yet of the pressure of
@@ -644,10 +601,7 @@ class Held(TestCase):
                 self.assertRegex(" ".join(stderr.split()), message)
         # which the law in its own step has
         found = self.run_block(
-            {
-                "Boundary 0/Traction": "0.001*t; 0",
-                "Solver/Coulomb pressure": "Newton",
-            }
+            {"Boundary 0/Traction": "0.001*t; 0", "Solver/Coulomb pressure": "Newton"}
         )
         self.assertClose(found["friction_force_x"][-1], 0.001, relative=1e-5)
 
@@ -675,10 +629,8 @@ class Held(TestCase):
                 "Geometry/Generator": "subdivided_hyper_rectangle",
                 "Geometry/Arguments": "4, 2 : 0, 0 : 2, 1 : true",
                 **{f"Boundary {b}/Role": "free" for b in (0, 1, 3)},
-                "Boundary 2/Role": "contact",
-                "Boundary 2/Contact law": "unilateral",
-                "Boundary 2/Friction law": "coulomb",
-                "Boundary 2/Friction coefficient": 0.3,
+                **on_boundary(2, Role="contact", Contact_law="unilateral"),
+                **on_boundary(2, Friction_law="coulomb", Friction_coefficient=0.3),
                 "Boundary 2/Foundation displacement": "-1e-3*t",
                 "Time/Phases": "1: 4",
                 "Solver/Contact tolerance": 1e-8,
@@ -698,8 +650,7 @@ class WherePiecesMeet(TestCase):
         "Geometry/Arguments": "0, 0; 1, 0; 0.2, 1; 1.2, 1 : true",
         "Geometry/Global refinements": 2,
         "Material/Law": "elastic",
-        "Boundary 1/Role": "clamped",
-        "Boundary 2/Role": "free",
+        **with_roles(clamped=[1], free=[2]),
         "Time/Phases": "1: 4",
     }
 
@@ -713,12 +664,10 @@ class WherePiecesMeet(TestCase):
                         "wedge",
                         {
                             **self.WEDGE,
-                            "Boundary 0/Role": "contact",
-                            "Boundary 0/Friction law": "coulomb",
+                            **on_boundary(0, Role="contact", Friction_law="coulomb"),
                             "Boundary 0/Friction coefficient": 0.8,
                             "Boundary 0/Normal stress": "-0.01*t",
-                            "Boundary 3/Role": "contact",
-                            "Boundary 3/Friction law": "none",
+                            **on_boundary(3, Role="contact", Friction_law="none"),
                             "Boundary 3/Foundation displacement": foundation,
                             "Solver/Contact tolerance": 1e-10,
                             "Solver/Linear solver": solver,
@@ -742,10 +691,8 @@ class WherePiecesMeet(TestCase):
                     ("Friction law", "none"),
                 )
             },
-            "Boundary 1/Role": "traction",
-            "Boundary 1/Pressure": "0.02*t",
-            "Boundary 3/Role": "traction",
-            "Boundary 3/Pressure": "0.01*t",
+            **on_boundary(1, Role="traction", Pressure="0.02*t"),
+            **on_boundary(3, Role="traction", Pressure="0.01*t"),
             "Time/Phases": "1: 2",
         }
         groove = {
@@ -774,18 +721,13 @@ class WherePiecesMeet(TestCase):
             "Geometry/Arguments": "2, 2, 3 : 0, 0, 0 : 2, 1, 0.5 : true",
             "Material/Law": "elastic",
             "Material/Poisson's ratio": 0,
-            "Boundary 0/Role": "contact",
-            "Boundary 0/Contact law": "unilateral",
-            "Boundary 0/Friction law": "coulomb",
-            "Boundary 0/Friction coefficient": 0.3,
+            **on_boundary(0, Role="contact", Contact_law="unilateral"),
+            **on_boundary(0, Friction_law="coulomb", Friction_coefficient=0.3),
             **{f"Boundary {id}/Role": "free" for id in (1, 2, 3)},
-            "Boundary 4/Role": "contact",
-            "Boundary 4/Contact law": "unilateral",
-            "Boundary 4/Friction law": "tresca",
-            "Boundary 4/Friction bound": 2e-5,
+            **on_boundary(4, Role="contact", Contact_law="unilateral"),
+            **on_boundary(4, Friction_law="tresca", Friction_bound=2e-5),
             "Boundary 4/Foundation displacement": "-2e-4*t",
-            "Boundary 5/Role": "displacement",
-            "Boundary 5/Displacement": "4e-5*t; 1e-4*t; -2e-4*t",
+            **on_boundary(5, Role="displacement", Displacement="4e-5*t; 1e-4*t; -2e-4*t"),
             "Solver/Coulomb pressure": "fixed point",
             "Solver/Contact tolerance": 1e-9,
             "Time/Phases": "1: 3",
@@ -809,14 +751,11 @@ class WherePiecesMeet(TestCase):
                     "Geometry/Arguments": f"{', '.join([str(n)] * dim)} : "
                     f"{', '.join(['0'] * dim)} : {sides} : true",
                     "Material/Law": "elastic",
-                    "Boundary 0/Role": "contact",
-                    "Boundary 0/Friction law": "tresca",
+                    **on_boundary(0, Role="contact", Friction_law="tresca"),
                     "Boundary 0/Friction bound": bound,
                     "Boundary 1/Role": "free",
-                    f"Boundary {below}/Role": "contact",
-                    f"Boundary {below}/Contact law": "unilateral",
-                    f"Boundary {below}/Friction law": "none",
-                    f"Boundary {below}/Gap": f"-{push}*t",
+                    **on_boundary(below, Role="contact", Contact_law="unilateral"),
+                    **on_boundary(below, Friction_law="none", Gap=f"-{push}*t"),
                     f"Boundary {top}/Role": "free",
                     "Time/Phases": "1: 2",
                     "Solver/Contact tolerance": 1e-8,
@@ -828,9 +767,7 @@ class WherePiecesMeet(TestCase):
                 self.check_identities(result, 1e-8, balance=1e-6)
                 resists = bound / n / 2  # of the nodes at the corner
                 self.assertClose(
-                    result["friction_dissipation"][-1],
-                    resists * push,
-                    relative=1e-4,
+                    result["friction_dissipation"][-1], resists * push, relative=1e-4
                 )
                 force = -result[f"contact_force_{'xyz'[dim - 1]}"][-1]
                 self.assertClose(force, resists, relative=1e-4)
@@ -848,17 +785,13 @@ class FixedPoint(TestCase):
             {
                 "Geometry/Generator": "subdivided_hyper_rectangle",
                 "Geometry/Arguments": "18, 2 : 0, 0 : 1, 1 : true",
-                "Material/Young's modulus": "1.7*exp(-y^2)",
-                "Material/Poisson's ratio": 0.499,
+                **elastic_moduli("1.7*exp(-y^2)", 0.499),
                 "Material/Law": "elastic",
                 "Boundary 0/Role": "traction",
                 "Boundary 0/Pressure": "0.004*10^(2*sin(y))*(1-exp(-5*t))",
-                "Boundary 1/Role": "symmetry",
-                "Boundary 2/Role": "clamped",
-                "Boundary 3/Role": "contact",
-                "Boundary 3/Contact law": "unilateral",
-                "Boundary 3/Friction law": "coulomb",
-                "Boundary 3/Friction coefficient": 3,
+                **with_roles(symmetry=[1], clamped=[2]),
+                **on_boundary(3, Role="contact", Contact_law="unilateral"),
+                **on_boundary(3, Friction_law="coulomb", Friction_coefficient=3),
                 "Boundary 3/Gap": 0.0066,
                 "Boundary 3/Foundation motion": "-0.47*10^(2*sin(x))*sqrt(t); 0",
                 "Solver/Contact tolerance": 1e-10,
@@ -881,10 +814,8 @@ class AtRest(TestCase):
             "Geometry/Generator": "concentric_hyper_shells",
             "Geometry/Arguments": "0,0:0.125:0.25:2:0.0:8:true",
             "Material/Young's modulus": 7.8e14,
-            "Material/Law": "maxwell",
-            "Material/maxwell/Viscosity": 1e14,
-            "Boundary 0/Role": "clamped",
-            "Boundary 1/Role": "clamped",
+            **of_law("maxwell", Viscosity=1e14),
+            **with_roles(clamped=[0, 1]),
             "Initial state/Stress": "0; 1e13; 0; 0",
             "Time/Phases": "1: 3",
             "Time/Scheme": "backward Euler",
@@ -893,13 +824,10 @@ class AtRest(TestCase):
             "Geometry/Generator": "truncated_cone",
             "Geometry/Arguments": "1:0.5:1",
             "Geometry/Global refinements": 1,
-            "Material/Law": "maxwell",
-            "Material/maxwell/Viscosity": 3,
+            **of_law("maxwell", Viscosity=3),
             "Boundary 0/Role": "free",
-            "Boundary 1/Role": "contact",
-            "Boundary 1/Contact law": "normal compliance",
-            "Boundary 1/Compliance": 4,
-            "Boundary 1/Friction law": "tresca",
+            **on_boundary(1, Role="contact", Contact_law="normal compliance"),
+            **on_boundary(1, Compliance=4, Friction_law="tresca"),
             "Boundary 1/Friction bound": "0.002*(1 + 0.5*sin(3*y))",
             "Boundary 2/Role": "free",
             "Initial state/Equilibrate": "true",
@@ -917,10 +845,8 @@ class AtRest(TestCase):
         "Geometry/Generator": "subdivided_hyper_rectangle",
         "Geometry/Arguments": "2, 2, 2 : 0, 0, 0 : 1, 1, 1 : true",
         **{f"Boundary {face}/Role": "free" for face in range(4)},
-        "Boundary 4/Role": "contact",
-        "Boundary 4/Contact law": "unilateral",
-        "Boundary 4/Friction law": "coulomb",
-        "Boundary 4/Friction coefficient": 0.3,
+        **on_boundary(4, Role="contact", Contact_law="unilateral"),
+        **on_boundary(4, Friction_law="coulomb", Friction_coefficient=0.3),
         "Boundary 5/Role": "clamped",
         "Time/Phases": "1: 4",
     }
@@ -935,10 +861,8 @@ class AtRest(TestCase):
             "Geometry/Generator": "half_hyper_ball",
             "Geometry/Arguments": "0, 0 : 1",
             "Geometry/Global refinements": 1,
-            "Material/Young's modulus": 2.261,
-            "Material/Poisson's ratio": -0.5,
-            "Material/Law": "maxwell",
-            "Material/maxwell/Viscosity": "0.005894*(1 + t)",
+            **elastic_moduli(2.261, -0.5),
+            **of_law("maxwell", Viscosity="0.005894*(1 + t)"),
             "Boundary 0/Friction law": "coulomb",
             "Boundary 0/Friction coefficient": "0.3*exp(-y^2)*abs(sin(7*t))",
             "Boundary 0/Gap": "0.007404*abs(x - 0.4) - 0.009272*sin(4*t)",
@@ -980,8 +904,7 @@ class AtRest(TestCase):
             result = self.run_block(
                 {
                     "Boundary 4/Gap": 0.1,
-                    "Boundary 0/Role": "traction",
-                    "Boundary 0/Traction": "0.01*min(2*t, 1); 0; 0",
+                    **on_boundary(0, Role="traction", Traction="0.01*min(2*t, 1); 0; 0"),
                     "Solver/Coulomb pressure": pressure,
                 },
                 ranks=2,
@@ -996,8 +919,7 @@ class AtRest(TestCase):
         result = self.run_block(
             {
                 "Boundary 4/Friction law": "none",
-                "Boundary 5/Role": "displacement",
-                "Boundary 5/Displacement": "0; 0; -0.01*(1 + t)",
+                **on_boundary(5, Role="displacement", Displacement="0; 0; -0.01*(1 + t)"),
                 "Initial state/Equilibrate": "true",
             }
         )
@@ -1008,9 +930,7 @@ class AtRest(TestCase):
         """A column whose upper half is taken away, pressed to its foundation by
         its weight: as in bilateral contact."""
         contact = {
-            "Boundary 2/Role": "contact",
-            "Boundary 2/Friction law": "tresca",
-            "Boundary 2/Friction bound": 0.3,
+            **on_boundary(2, Role="contact", Friction_law="tresca", Friction_bound=0.3),
             "Material 1/Law": "maxwell",
             "Material 1/maxwell/Viscosity": 100,
             "Solver/Contact tolerance": 1e-11,
@@ -1025,9 +945,7 @@ class AtRest(TestCase):
                 result[name], bilateral[name], absolute=1e-7 * size, what=name
             )
         self.assertClose(
-            result["contact_force_y"][1:],
-            -bilateral["reaction_2_y"][1:],
-            relative=1e-7,
+            result["contact_force_y"][1:], -bilateral["reaction_2_y"][1:], relative=1e-7
         )
 
 
@@ -1037,13 +955,9 @@ class Refused(TestCase):
     PLATE = {
         "Geometry/Generator": "subdivided_hyper_rectangle",
         "Geometry/Arguments": "4, 2 : 0, 0 : 2, 1 : true",
-        "Boundary 0/Role": "free",
-        "Boundary 1/Role": "free",
-        "Boundary 2/Role": "contact",
-        "Boundary 2/Contact law": "unilateral",
-        "Boundary 2/Friction law": "none",
-        "Boundary 3/Role": "displacement",
-        "Boundary 3/Displacement": "0; -0.01*t",
+        **with_roles(free=[0, 1]),
+        **on_boundary(2, Role="contact", Contact_law="unilateral", Friction_law="none"),
+        **on_boundary(3, Role="displacement", Displacement="0; -0.01*t"),
         "Time/Phases": "1: 2",
     }
 
@@ -1074,14 +988,10 @@ class Refused(TestCase):
             "Geometry/Generator": "subdivided_hyper_rectangle",
             "Geometry/Arguments": "8, 2 : 0, 0 : 1, 1e-4 : true",
             "Material/Poisson's ratio": 0.3,
-            "Boundary 0/Role": "contact",
-            "Boundary 0/Contact law": "unilateral",
-            "Boundary 0/Friction law": "none",
-            "Boundary 0/Gap": 0.0076,
-            "Boundary 1/Role": "clamped",
-            "Boundary 2/Role": "traction",
-            "Boundary 3/Role": "contact",
-            "Boundary 3/Friction law": "coulomb",
+            **on_boundary(0, Role="contact", Contact_law="unilateral"),
+            **on_boundary(0, Friction_law="none", Gap=0.0076),
+            **with_roles(clamped=[1], traction=[2]),
+            **on_boundary(3, Role="contact", Friction_law="coulomb"),
             "Boundary 3/Friction coefficient": 20,
             "Solver/Contact tolerance": 1e-14,
             "Time/Phases": "2: 2",
@@ -1099,9 +1009,7 @@ class Refused(TestCase):
         results = {unit: in_unit(unit) for unit in (1, 3, 7)}
         # the first step comes to rest above its tolerance, the second below
         for row in 1, 2:
-            norms = [
-                results[unit]["energy_norm"][row] / unit**0.5 for unit in results
-            ]
+            norms = [results[unit]["energy_norm"][row] / unit**0.5 for unit in results]
             spread = (max(norms) - min(norms)) / norms[0]
             for result in results.values():
                 self.assertIn("rounding leaves an error of the solver", result.stdout)
@@ -1130,13 +1038,10 @@ class Refused(TestCase):
             "Boundary 0/Role": "displacement",
             "Boundary 0/Displacement": "0.002925*10^(2*sin(y))*0.5*(1-cos(4*pi*t)); "
             "0; -0.03889*10^(2*sin(x))*(1-exp(-5*t))",
-            "Boundary 1/Role": "contact",
-            "Boundary 1/Contact law": "unilateral",
-            "Boundary 1/Friction law": "none",
-            "Boundary 1/Gap": "if(y < 0.5, 0, 0.001495)",
+            **on_boundary(1, Role="contact", Contact_law="unilateral"),
+            **on_boundary(1, Friction_law="none", Gap="if(y < 0.5, 0, 0.001495)"),
             **{f"Boundary {b}/Role": "free" for b in (2, 3, 4)},
-            "Boundary 5/Role": "contact",
-            "Boundary 5/Contact law": "unilateral",
+            **on_boundary(5, Role="contact", Contact_law="unilateral"),
             "Boundary 5/Friction law": "none",
             "Time/Phases": "0.25: 3",
         }
@@ -1154,23 +1059,16 @@ class Refused(TestCase):
             "Geometry/Global refinements": 1,
             "Geometry/Boundary refinements": "0: 1",
             "Geometry/Boundary ids": "if(id == 3 && x > 0.5, 7, id)",
-            "Material/Young's modulus": 0.7543,
-            "Material/Poisson's ratio": 0.4999,
-            "Material/Law": "norton",
-            "Material/norton/Stress cap": 0.001003,
+            **elastic_moduli(0.7543, 0.4999),
+            **of_law("norton", Stress_cap=0.001003),
             "Boundary 0/Role": "free",
-            "Boundary 1/Role": "traction",
-            "Boundary 1/Traction": "1.903e-05*t; 0",
-            "Boundary 2/Role": "contact",
-            "Boundary 2/Contact law": "normal compliance",
-            "Boundary 2/Compliance": "2718*(1 + x^2)",
-            "Boundary 2/Compliance exponent": 1.5,
-            "Boundary 2/Friction law": "coulomb",
-            "Boundary 2/Friction coefficient": "abs(x - 0.4)",
+            **on_boundary(1, Role="traction", Traction="1.903e-05*t; 0"),
+            **on_boundary(2, Role="contact", Contact_law="normal compliance"),
+            **on_boundary(2, Compliance="2718*(1 + x^2)", Compliance_exponent=1.5),
+            **on_boundary(2, Friction_law="coulomb", Friction_coefficient="abs(x - 0.4)"),
             "Boundary 2/Gap": "0.0002983*x^2",
             "Boundary 3/Role": "free",
-            "Boundary 7/Role": "traction",
-            "Boundary 7/Traction": "0; 0.000202*t",
+            **on_boundary(7, Role="traction", Traction="0; 0.000202*t"),
             "Loads/Body force": "0; -0.006558*t",
             "Time/Phases": "0.25: 5, 0.5: 8, 0.75: 4",
             "Step control/Tolerance": 0.3,
@@ -1215,13 +1113,9 @@ class Refused(TestCase):
             **self.PLATE,
             "Geometry/Generator": "hyper_shell",
             "Geometry/Arguments": "0, 0 : 0.5 : 1 : 8 : true",
-            "Boundary 0/Role": "displacement",
-            "Boundary 0/Displacement": "0; -0.01*t",
-            "Boundary 1/Role": "contact",
-            "Boundary 1/Contact law": "unilateral",
-            "Boundary 1/Friction law": "none",
-            "Boundary 1/Gap": "y + 1",
-            "Boundary 1/Foundation normal": "0, -1",
+            **on_boundary(0, Role="displacement", Displacement="0; -0.01*t"),
+            **on_boundary(1, Role="contact", Contact_law="unilateral"),
+            **on_boundary(1, Friction_law="none", Gap="y + 1", Foundation_normal="0, -1"),
         }
         for name in list(rim):
             if name.startswith(("Boundary 2", "Boundary 3")):

@@ -7,7 +7,6 @@
 #include <viscoplastic_contact/base/types.h>
 
 #include <cmath>
-#include <sstream>
 
 namespace Viscoplastic
 {
@@ -40,15 +39,8 @@ namespace Viscoplastic
     std::string
     list_of(const std::string &variables)
     {
-      std::string                    result;
-      const std::vector<std::string> names =
-        Utilities::split_string_list(variables);
-      for (std::size_t i = 0; i < names.size(); ++i)
-        result += (i == 0               ? "" :
-                   i + 1 < names.size() ? ", " :
-                                          " and ") +
-                  names[i];
-      return result;
+      std::string result = Utilities::replace_in_string(variables, ",", ", ");
+      return result.replace(result.rfind(", "), 2, " and ");
     }
 
 
@@ -60,11 +52,10 @@ namespace Viscoplastic
     refuse_slips(const std::string &text, const std::string &entry)
     {
       const auto refuse = [&](const std::string &why) {
-        AssertThrow(false,
-                    ExpressionError("The expression '" +
-                                      excerpt(Utilities::trim(text)) +
-                                      "' of '" + entry + "' " + why,
-                                    entry));
+        throw ExpressionError("The expression '" +
+                                excerpt(Utilities::trim(text)) + "' of '" +
+                                entry + "' " + why,
+                              entry);
       };
       for (const char *function : {"rand", "rand_seed"})
         if (mentions(text, function))
@@ -106,9 +97,9 @@ namespace Viscoplastic
                    const std::string &variables,
                    const std::string &entry)
   {
-    AssertThrow(!Utilities::trim(text).empty(),
-                ExpressionError("The expression of '" + entry + "' is empty.",
-                                entry));
+    if (Utilities::trim(text).empty())
+      throw ExpressionError("The expression of '" + entry + "' is empty.",
+                            entry);
     refuse_slips(text, entry);
     std::unique_ptr<FunctionParser<dim>> parser =
       std::make_unique<ParserWithTables<dim>>(columns_in(text));
@@ -124,17 +115,15 @@ namespace Viscoplastic
       {
         const std::string why  = reason_of_current_exception(),
                           name = unknown_name(why, variables);
-        AssertThrow(
-          false,
-          ExpressionError("The expression '" + excerpt(Utilities::trim(text)) +
-                            "' of '" + entry + "' cannot be parsed: " +
-                            (name.empty() ?
-                               as_sentence(excerpt(why, 200)) :
-                               "there is no '" + excerpt(name) +
-                                 "'; its variables are " + list_of(variables) +
-                                 ", and pi and functions such as sin, exp, min "
-                                 "and if are known."),
-                          entry));
+        throw ExpressionError(
+          "The expression '" + excerpt(Utilities::trim(text)) + "' of '" +
+            entry + "' cannot be parsed: " +
+            (name.empty() ? as_sentence(excerpt(why, 200)) :
+                            "there is no '" + excerpt(name) +
+                              "'; its variables are " + list_of(variables) +
+                              ", and pi and functions such as sin, exp, min "
+                              "and if are known."),
+          entry);
       }
     return parser;
   }
@@ -155,16 +144,12 @@ namespace Viscoplastic
       {
         numbers.clear(); // refused below
       }
-    for (const double number : numbers)
-      if (!std::isfinite(number))
-        {
-          numbers.clear();
-          break;
-        }
-    AssertThrow(numbers.size() == dim,
-                ExcMessage("'" + entry + "' is '" + excerpt(text) +
-                           "', but it needs " + std::to_string(dim) +
-                           " finite numbers."));
+    require(numbers.size() == dim &&
+              std::all_of(numbers.begin(),
+                          numbers.end(),
+                          [](const double x) { return std::isfinite(x); }),
+            "'" + entry + "' is '" + excerpt(text) + "', but it needs " +
+              std::to_string(dim) + " finite numbers.");
     Point<dim> result;
     for (unsigned int d = 0; d < dim; ++d)
       result[d] = numbers[d];
@@ -249,15 +234,14 @@ namespace Viscoplastic
         std::string position;
         for (const std::string &name : names)
           position += (position.empty() ? "" : ",") + name;
-        std::ostringstream message;
-        message << "The expression '" << (parser ? excerpt(text) : "derived")
-                << "' of '" << entry << "' has the value " << result << " at "
-                << (position == FunctionParser<dim>::default_variable_names() ?
-                      "x" :
-                      position)
-                << " = (" << x << "), t = " << t
-                << (gap.empty() ? "; it must be finite." : ": " + gap + ".");
-        AssertThrow(false, ExcMessage(message.str()));
+        refuse("The expression '" + (parser ? excerpt(text) : "derived") +
+               "' of '" + entry + "' has the value " + as_text(result) +
+               " at " +
+               (position == FunctionParser<dim>::default_variable_names() ?
+                  "x" :
+                  position) +
+               " = (" + as_text(x) + "), t = " + as_text(t) +
+               (gap.empty() ? "; it must be finite." : ": " + gap + "."));
       }
   }
 
@@ -334,11 +318,10 @@ namespace Viscoplastic
                                           const std::string &entry)
   {
     const auto parts = Utilities::split_string_list(text, ';');
-    AssertThrow(parts.size() == n_components,
-                ExcMessage(
-                  "'" + entry + "' needs " + std::to_string(n_components) +
-                  " components separated by semicolons, but '" + excerpt(text) +
-                  "' has " + std::to_string(parts.size()) + "."));
+    require(parts.size() == n_components,
+            "'" + entry + "' needs " + std::to_string(n_components) +
+              " components separated by semicolons, but '" + excerpt(text) +
+              "' has " + std::to_string(parts.size()) + ".");
     for (const std::string &part : parts)
       components.emplace_back(part, entry);
   }

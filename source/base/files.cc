@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <deal.II/base/exceptions.h>
 #include <deal.II/base/utilities.h>
 
 #include <viscoplastic_contact/base/files.h>
@@ -33,9 +32,9 @@ namespace Viscoplastic
     void
     check_written(const bool success, const std::string &name)
     {
-      AssertThrow(success,
-                  ExcMessage("'" + name + "' cannot be written: " +
-                             std::strerror(errno) + "."));
+      require(success,
+              "'" + name + "' cannot be written: " + std::strerror(errno) +
+                ".");
     }
 
 
@@ -137,8 +136,7 @@ namespace Viscoplastic
   {
     std::error_code   none;
     const std::string kind = kind_of(fs::symlink_status(name, none).type());
-    AssertThrow(kind.empty(),
-                ExcMessage("'" + name + "' cannot be written: " + kind + "."));
+    require(kind.empty(), "'" + name + "' cannot be written: " + kind + ".");
   }
 
 
@@ -148,8 +146,7 @@ namespace Viscoplastic
   {
     std::error_code   none;
     const std::string kind = kind_of(fs::status(name, none).type());
-    AssertThrow(kind.empty(),
-                ExcMessage("'" + name + "' cannot be read: " + kind + "."));
+    require(kind.empty(), "'" + name + "' cannot be read: " + kind + ".");
     errno = 0;
     std::ifstream file(name, std::ios::binary);
     if (!file && (errno == ENOENT || errno == ENOTDIR))
@@ -158,9 +155,8 @@ namespace Viscoplastic
     // To insert nothing would count as a failure.
     if (file && file.peek() != std::ifstream::traits_type::eof())
       bytes << file.rdbuf();
-    AssertThrow(file && bytes,
-                ExcMessage("'" + name +
-                           "' cannot be read: " + std::strerror(errno) + "."));
+    require(file && bytes,
+            "'" + name + "' cannot be read: " + std::strerror(errno) + ".");
     return bytes.str();
   }
 
@@ -261,12 +257,9 @@ namespace Viscoplastic
               }
             const std::string holder =
               excerpt(std::string(buffer, std::max<ssize_t>(n, 0)), 150);
-            AssertThrow(false,
-                        ExcMessage("Another run" +
-                                   (holder.empty() ? "" : " (" + holder + ")") +
-                                   " is writing into '" + directory +
-                                   "'; wait until it has ended, or " +
-                                   otherwise + "."));
+            refuse("Another run" + (holder.empty() ? "" : " (" + holder + ")") +
+                   " is writing into '" + directory +
+                   "'; wait until it has ended, or " + otherwise + ".");
           }
         struct stat mine, there;
         if (fstat(opened, &mine) == 0 && stat(file.c_str(), &there) == 0 &&

@@ -1,23 +1,48 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <deal.II/base/exceptions.h>
 #include <deal.II/base/mpi.h>
+#include <deal.II/base/utilities.h>
 
 #include <viscoplastic_contact/base/messages.h>
 
 #include <algorithm>
 #include <cctype>
-#include <iomanip>
 #include <new>
 #include <sstream>
 
 namespace Viscoplastic
 {
+  void
+  refuse(const std::string &sentence)
+  {
+    throw dealii::StandardExceptions::ExcMessage(sentence);
+  }
+
+
+
+  std::optional<double>
+  number_of(const std::string &text)
+  {
+    try
+      {
+        return dealii::Utilities::string_to_double(text);
+      }
+    catch (const std::exception &)
+      {
+        return {};
+      }
+  }
+
+
+
   std::string
   reason(const std::exception &exception)
   {
     std::ostringstream message;
-    if (const auto *e = dynamic_cast<const dealii::ExceptionBase *>(&exception))
-      e->print_info(message);
+    const auto *const  theirs =
+      dynamic_cast<const dealii::ExceptionBase *>(&exception);
+    if (theirs != nullptr)
+      theirs->print_info(message);
     else if (dynamic_cast<const std::bad_alloc *>(&exception) != nullptr)
       message << "there is not enough memory";
     else
@@ -27,9 +52,7 @@ namespace Viscoplastic
     while (words >> word)
       line += (line.empty() ? "" : " ") + word;
     // What libraries say does not always end as a sentence does.
-    const bool is_theirs =
-      dynamic_cast<const dealii::ExceptionBase *>(&exception) != nullptr;
-    if (is_theirs && !line.empty() &&
+    if (theirs != nullptr && !line.empty() &&
         std::isalnum(static_cast<unsigned char>(line.back())) != 0)
       line += '.';
     return line;
@@ -76,8 +99,7 @@ namespace Viscoplastic
                communicator);
     if (first == n_ranks)
       return;
-    AssertThrow(
-      false, dealii::ExcMessage(MPI::broadcast(communicator, failure, first)));
+    refuse(MPI::broadcast(communicator, failure, first));
   }
 
 
@@ -85,10 +107,10 @@ namespace Viscoplastic
   std::string
   list(const std::set<unsigned int> &ids)
   {
-    std::string result;
+    std::vector<std::string> names;
     for (const unsigned int id : ids)
-      result += (result.empty() ? "" : ", ") + std::to_string(id);
-    return result;
+      names.push_back(std::to_string(id));
+    return enumeration(names, names.size());
   }
 
 
@@ -96,9 +118,7 @@ namespace Viscoplastic
   std::string
   number(const double value, const int digits)
   {
-    std::ostringstream text;
-    text << std::setprecision(digits) << value;
-    return text.str();
+    return as_text(value, digits);
   }
 
 
@@ -178,6 +198,17 @@ namespace Viscoplastic
           }
       }
     return best;
+  }
+
+
+
+  std::string
+  did_you_mean(const std::string              &name,
+               const std::vector<std::string> &candidates,
+               const std::string              &otherwise)
+  {
+    const std::string nearest = nearest_name(name, candidates);
+    return nearest.empty() ? otherwise : "; did you mean '" + nearest + "'?";
   }
 
 

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <deal.II/base/exceptions.h>
 #include <deal.II/base/mu_parser_internal.h>
 #include <deal.II/base/utilities.h>
 
@@ -79,9 +78,9 @@ namespace Viscoplastic
     unsigned int             n_lines = 0;
     const auto               require = [&](const bool         condition,
                              const std::string &sentence) {
-      AssertThrow(condition,
-                  ExcMessage("'" + file + "', line " + std::to_string(n_lines) +
-                             ": " + sentence));
+      Viscoplastic::require(condition,
+                            "'" + file + "', line " + std::to_string(n_lines) +
+                              ": " + sentence);
     };
     while (std::getline(input, line))
       {
@@ -118,17 +117,11 @@ namespace Viscoplastic
                   " numbers.");
         for (std::size_t c = 0; c < row.size(); ++c)
           {
-            double number = std::numeric_limits<double>::quiet_NaN();
-            try
-              {
-                number = Utilities::string_to_double(row[c]);
-              }
-            catch (const std::exception &)
-              {} // refused below
-            require(std::isfinite(number),
+            const auto number = number_of(row[c]);
+            require(number && std::isfinite(*number),
                     "'" + excerpt(row[c]) + "' in the column '" +
                       excerpt(names[c]) + "' is no finite number.");
-            (c == 0 ? arguments : values[c - 1]).push_back(number);
+            (c == 0 ? arguments : values[c - 1]).push_back(*number);
           }
         const std::size_t n = arguments.size();
         require(n == 1 || arguments[n - 1] > arguments[n - 2],
@@ -174,13 +167,11 @@ namespace Viscoplastic
   std::string
   DataTable::Column::explain_gap(const double argument) const
   {
-    std::ostringstream message;
-    message << "'" << excerpt(name) << "' of '" << table.section
-            << "' has no value at " << argument << ", since '"
-            << excerpt(table.name_of_argument) << "' goes from "
-            << table.arguments.front() << " to " << table.arguments.back()
-            << " in '" << table.file << "'";
-    return message.str();
+    return "'" + excerpt(name) + "' of '" + table.section +
+           "' has no value at " + as_text(argument) + ", since '" +
+           excerpt(table.name_of_argument) + "' goes from " +
+           as_text(table.arguments.front()) + " to " +
+           as_text(table.arguments.back()) + " in '" + table.file + "'";
   }
 
 
@@ -202,14 +193,13 @@ namespace Viscoplastic
     for (const auto &table : tables)
       for (const DataTable::Column &column : table->columns())
         {
-          AssertThrow(std::find(taken.begin(), taken.end(), column.name) ==
-                        taken.end(),
-                      ExcMessage("'" + table->section + "/File': the column '" +
-                                 excerpt(column.name) + "' of '" + table->file +
-                                 "' has a name that expressions know already, "
-                                 "as those of places, functions and what laws "
-                                 "are given (x, t, p, id); give it another "
-                                 "one."));
+          require(std::find(taken.begin(), taken.end(), column.name) ==
+                    taken.end(),
+                  "'" + table->section + "/File': the column '" +
+                    excerpt(column.name) + "' of '" + table->file +
+                    "' has a name that expressions know already, as those of "
+                    "places, functions and what laws are given (x, t, p, id); "
+                    "give it another one.");
           taken.push_back(column.name);
         }
     current_tables() = tables;

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <deal.II/base/exceptions.h>
 
 #include <viscoplastic_contact/base/messages.h>
 #include <viscoplastic_contact/base/units.h>
@@ -9,7 +8,6 @@
 #include <cmath>
 #include <cstdlib>
 #include <map>
-#include <sstream>
 
 namespace Viscoplastic
 {
@@ -70,6 +68,15 @@ namespace Viscoplastic
                      known_units().end(),
                      [&name](const Unit &unit) { return unit.name == name; });
       return found == known_units().end() ? nullptr : &*found;
+    }
+
+
+
+    /// "length^2"; the name alone for an exponent of 1.
+    std::string
+    power(const std::string &name, const double exponent)
+    {
+      return exponent == 1. ? name : name + '^' + as_text(exponent);
     }
 
 
@@ -229,21 +236,16 @@ namespace Viscoplastic
         (entry == "Stress" ? ", or a product such as N/mm^2" : "");
       const std::string unknown = found ? found->unknown_name : text;
       if (!unknown.empty())
-        {
-          const std::string near =
-            nearest_name(unknown, names_of_units(wanted));
-          AssertThrow(false,
-                      ExcMessage(where + (near.empty() ?
-                                            "; it must be " + allowed + "." :
-                                            "; did you mean '" + near + "'?")));
-        }
-      AssertThrow(found->end == text.size() + 1,
-                  ExcMessage(where + ", which is no unit behind '" +
-                             excerpt(text.substr(0, found->end - 1)) +
-                             "'; it must be " + allowed + "."));
-      AssertThrow(found->unit.dimension == wanted,
-                  ExcMessage(where + ", " + in_words(found->unit.dimension) +
-                             "; it must be " + allowed + "."));
+        refuse(where + did_you_mean(unknown,
+                                    names_of_units(wanted),
+                                    "; it must be " + allowed + "."));
+      require(found->end == text.size() + 1,
+              where + ", which is no unit behind '" +
+                excerpt(text.substr(0, found->end - 1)) + "'; it must be " +
+                allowed + ".");
+      require(found->unit.dimension == wanted,
+              where + ", " + in_words(found->unit.dimension) + "; it must be " +
+                allowed + ".");
       return found->unit;
     }
   } // namespace
@@ -294,19 +296,15 @@ namespace Viscoplastic
     for (const auto &[known, word] : words)
       if (known == dimension)
         return word;
-    std::ostringstream text;
+    std::string text;
     for (const auto &[name, exponent] :
          {std::make_pair("length", dimension.length),
           std::make_pair("time", dimension.time),
           std::make_pair("stress", dimension.stress),
           std::make_pair("temperature", dimension.temperature)})
       if (std::abs(exponent) > 1e-9)
-        {
-          text << (text.str().empty() ? "" : " ") << name;
-          if (exponent != 1.)
-            text << '^' << exponent;
-        }
-    return text.str();
+        text += (text.empty() ? "" : " ") + power(name, exponent);
+    return text;
   }
 
 
@@ -418,13 +416,13 @@ namespace Viscoplastic
       missing.emplace_back("Time");
     if (stress_name.empty() && force_name.empty())
       missing.emplace_back("Stress");
-    AssertThrow(missing.empty(),
-                ExcMessage("'Units' has no " + enumeration(missing) +
-                           "; give `Length', `Time' and `Stress' (or `Force'), "
-                           "or none of them."));
-    AssertThrow(stress_name.empty() || force_name.empty(),
-                ExcMessage("'Units' has both `Stress' and `Force'; give one of "
-                           "them, the other one follows."));
+    require(
+      missing.empty(),
+      "'Units' has no " + enumeration(missing) +
+        "; give `Length', `Time' and `Stress' (or `Force'), or none of them.");
+    require(stress_name.empty() || force_name.empty(),
+            "'Units' has both `Stress' and `Force'; give one of them, the "
+            "other one follows.");
     length = declared_unit("Length", length_name, length_dimension);
     time   = declared_unit("Time", time_name, time_dimension);
     if (!stress_name.empty())
@@ -449,58 +447,37 @@ namespace Viscoplastic
       return "";
     const unsigned int dim             = are_of_whole_bodies ? 3 : dim_of_mesh;
     const auto         power_of_length = [this](const double n) {
-      std::ostringstream text;
-      text << length.name;
-      if (n != 1.)
-        text << '^' << n;
-      return text.str();
+      return power(length.name, n);
     };
     // With a name of its own in three dimensions, and by length in two.
-    const auto derived = [&](const char *unit, const unsigned int n) {
+    const auto derived = [&](const char        *unit,
+                             const unsigned int n,
+                             const bool         by_length) {
       const auto found = prefix(si({double(n), 0., 1.}));
       return found ?
-               *found + unit + (dim == 2 ? '/' + length.name : std::string()) :
-               stress.name + '*' + power_of_length(dim == 2 ? n - 1 : n);
+               *found + unit + (by_length ? '/' + length.name : std::string()) :
+               stress.name + '*' + power_of_length(by_length ? n - 1 : n);
     };
-    const std::string energy = derived("J", 3);
-    switch (quantity)
-      {
-        case Quantity::pure_number:
-          return "";
-        case Quantity::length:
-          return length.name;
-        case Quantity::area:
-          return power_of_length(dim - 1);
-        case Quantity::volume:
-          return power_of_length(dim);
-        case Quantity::time:
-          return time.name;
-        case Quantity::rate:
-          return "1/" + time.name;
-        case Quantity::velocity:
-          return length.name + '/' + time.name;
-        case Quantity::stress:
-          return stress.name;
-        case Quantity::force:
-          return derived("N", 2);
-        case Quantity::axial_force:
-          return Units(*this).name(Quantity::force, 3);
-        case Quantity::energy:
-          return energy;
-        case Quantity::work_per_area:
-          return stress.name + '*' + length.name;
-        case Quantity::energy_norm:
-          return '(' + energy + ")^0.5";
-        case Quantity::rate_norm:
-          return '(' + energy + '/' + time.name + ")^0.5";
-        case Quantity::stress_norm:
-          return stress.name + '*' + power_of_length(0.5 * dim);
-        case Quantity::temperature:
-          return "K";
-        case Quantity::wall_time:
-          return "s";
-      }
-    return "";
+    const std::string                     energy = derived("J", 3, dim == 2);
+    const std::map<Quantity, std::string> names{
+      {Quantity::pure_number, ""},
+      {Quantity::length, length.name},
+      {Quantity::area, power_of_length(dim - 1)},
+      {Quantity::volume, power_of_length(dim)},
+      {Quantity::time, time.name},
+      {Quantity::rate, "1/" + time.name},
+      {Quantity::velocity, length.name + '/' + time.name},
+      {Quantity::stress, stress.name},
+      {Quantity::force, derived("N", 2, dim == 2)},
+      {Quantity::axial_force, derived("N", 2, false)},
+      {Quantity::energy, energy},
+      {Quantity::work_per_area, stress.name + '*' + length.name},
+      {Quantity::energy_norm, '(' + energy + ")^0.5"},
+      {Quantity::rate_norm, '(' + energy + '/' + time.name + ")^0.5"},
+      {Quantity::stress_norm, stress.name + '*' + power_of_length(0.5 * dim)},
+      {Quantity::temperature, "K"},
+      {Quantity::wall_time, "s"}};
+    return names.at(quantity);
   }
 
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <deal.II/base/exceptions.h>
 
 #include <viscoplastic_contact/base/files.h>
+#include <viscoplastic_contact/base/messages.h>
 #include <viscoplastic_contact/checkpoint/checkpoint_manifest.h>
 
 #include <iomanip>
@@ -43,17 +43,17 @@ namespace Viscoplastic
   CheckpointManifest
   CheckpointManifest::of_text(const std::string &text)
   {
-    const auto require = [](const bool condition) {
-      AssertThrow(condition, ExcMessage("the manifest is damaged"));
+    const auto require_sense = [](const bool condition) {
+      require(condition, "the manifest is damaged");
     };
-    AssertThrow(text.compare(0, first_line.size() + 1, first_line + '\n') == 0,
-                ExcMessage(
-                  "its format is that of another version of the program"));
+    require(text.compare(0, first_line.size() + 1, first_line + '\n') == 0,
+            "its format is that of another version of the program");
     const std::size_t last = text.rfind("\nchecksum ");
-    require(last != std::string::npos &&
-            text.substr(last + 1) ==
-              "checksum " + std::to_string(checksum(text.substr(0, last + 1))) +
-                '\n');
+    require_sense(last != std::string::npos &&
+                  text.substr(last + 1) ==
+                    "checksum " +
+                      std::to_string(checksum(text.substr(0, last + 1))) +
+                      '\n');
 
     CheckpointManifest manifest;
     std::istringstream lines(text.substr(0, last + 1));
@@ -67,7 +67,7 @@ namespace Viscoplastic
         if (key == "set")
           {
             const std::size_t equals = line.find(" = ");
-            require(equals != std::string::npos && equals >= 4);
+            require_sense(equals != std::string::npos && equals >= 4);
             manifest.parameters[line.substr(4, equals - 4)] =
               line.substr(equals + 3);
             continue;
@@ -86,10 +86,10 @@ namespace Viscoplastic
           {
             CheckpointManifest::File file;
             words >> file.name >> file.size >> file.checksum;
-            require(file.name.find('/') == std::string::npos);
+            require_sense(file.name.find('/') == std::string::npos);
             manifest.files.push_back(file);
           }
-        require(!words.fail());
+        require_sense(!words.fail());
       }
     return manifest;
   }

@@ -20,8 +20,7 @@ namespace Viscoplastic
   void
   require_sense(const bool condition)
   {
-    AssertThrow(condition,
-                ExcMessage("The checkpoint contradicts itself or the mesh."));
+    require(condition, "The checkpoint contradicts itself or the mesh.");
   }
 
 

@@ -30,7 +30,7 @@ namespace Viscoplastic
     read_file(const std::string &name)
     {
       const std::optional<std::string> bytes = read_file_if_any(name);
-      AssertThrow(bytes, ExcMessage("'" + name + "' cannot be read."));
+      require(bytes, "'" + name + "' cannot be read.");
       return *bytes;
     }
 
@@ -42,48 +42,15 @@ namespace Viscoplastic
     {
       std::error_code error;
       const auto      size = fs::file_size(directory + file.name, error);
-      AssertThrow(!error,
-                  ExcMessage("the file " + excerpt(file.name) + " is missing"));
-      AssertThrow(size == file.size,
-                  ExcMessage("the file " + excerpt(file.name) + " has " +
-                             std::to_string(size) + " bytes instead of " +
-                             std::to_string(file.size)));
+      require(!error, "the file " + excerpt(file.name) + " is missing");
+      require(size == file.size,
+              "the file " + excerpt(file.name) + " has " +
+                std::to_string(size) + " bytes instead of " +
+                std::to_string(file.size));
       std::string bytes = read_file(directory + file.name);
-      AssertThrow(bytes.size() == file.size && checksum(bytes) == file.checksum,
-                  ExcMessage("the file " + excerpt(file.name) +
-                             " does not have its checksum"));
+      require(bytes.size() == file.size && checksum(bytes) == file.checksum,
+              "the file " + excerpt(file.name) + " does not have its checksum");
       return bytes;
-    }
-
-
-
-    /// What went wrong on the first rank where something did, on all ranks.
-    std::string
-    common_failure(const std::string &failure, const MPI_Comm communicator)
-    {
-      for (const std::string &text :
-           Utilities::MPI::all_gather(communicator, failure))
-        if (!text.empty())
-          return text;
-      return "";
-    }
-
-
-
-    /// Call @p action and return what went wrong.
-    template <typename Action>
-    std::string
-    attempt(const Action &action)
-    {
-      try
-        {
-          action();
-        }
-      catch (const std::exception &exception)
-        {
-          return reason(exception);
-        }
-      return "";
     }
 
 
@@ -221,10 +188,9 @@ namespace Viscoplastic
         if (!entry.is_complete || entry.path == path(entry.n))
           result.push_back(entry);
       }
-    AssertThrow(!error,
-                ExcMessage("The directory '" + directory +
-                           "' for checkpoints cannot be read: " +
-                           error.message() + '.'));
+    require(!error,
+            "The directory '" + directory +
+              "' for checkpoints cannot be read: " + error.message() + '.');
     std::sort(result.begin(), result.end(), [](const Entry &a, const Entry &b) {
       return std::make_pair(a.n, a.path) < std::make_pair(b.n, b.path);
     });
@@ -236,16 +202,15 @@ namespace Viscoplastic
   void
   CheckpointStore::make_directory() const
   {
-    const std::string failure =
-      common_failure(attempt([&]() {
-                       if (rank == 0)
-                         fs::create_directories(directory);
-                     }),
-                     communicator);
-    AssertThrow(failure.empty(),
-                ExcMessage("The directory '" + directory +
-                           "' for checkpoints cannot be written; change "
-                           "'Checkpoint/Directory' or its permissions."));
+    fail_together(communicator, [&]() {
+      std::error_code error;
+      if (rank == 0)
+        fs::create_directories(directory, error);
+      require(!error,
+              "The directory '" + directory +
+                "' for checkpoints cannot be written; change "
+                "'Checkpoint/Directory' or its permissions.");
+    });
   }
 
 
@@ -258,16 +223,24 @@ namespace Viscoplastic
     const std::string        final_path = path(manifest.n);
     std::string              temporary;
     std::vector<std::string> remarks;
-    const auto               check = [&](const std::string &failure) {
-      const std::string text = common_failure(failure, communicator);
-      if (text.empty())
-        return;
-      // Make room; the checkpoints before are what counts.
-      if (rank == 0 && !temporary.empty())
-        attempt([&]() { remove_own(temporary, remarks); });
-      AssertThrow(false,
-                  ExcMessage("The checkpoint of step " +
-                             std::to_string(manifest.n) + " failed: " + text));
+    const auto do_together = [&](const std::function<void()> &work) {
+      try
+        {
+          fail_together(communicator, work);
+        }
+      catch (const std::exception &exception)
+        {
+          // Make room; the checkpoints before are what counts.
+          if (rank == 0 && !temporary.empty())
+            try
+              {
+                remove_own(temporary, remarks);
+              }
+            catch (const std::exception &)
+              {}
+          refuse("The checkpoint of step " + std::to_string(manifest.n) +
+                 " failed: " + reason(exception));
+        }
     };
 
     // Rank 0 says which files are to come before any of them is there.
@@ -275,7 +248,7 @@ namespace Viscoplastic
     for (const auto &file : files)
       names.push_back(file.first);
     const auto names_of_all = Utilities::MPI::gather(communicator, names);
-    check(attempt([&]() {
+    do_together([&]() {
       if (rank != 0)
         return;
       const std::string wanted = final_path + unfinished;
@@ -288,24 +261,24 @@ namespace Viscoplastic
         names.insert(names.end(), part.begin(), part.end());
       names.push_back(manifest_name);
       write_file(temporary + list_name, list_of_files(names));
-    }));
+    });
     temporary = Utilities::MPI::broadcast(communicator, temporary);
 
     std::vector<CheckpointManifest::File> mine;
-    check(attempt([&]() {
+    do_together([&]() {
       for (const auto &[name, bytes] : files)
         {
           write_file(temporary + name, bytes);
           mine.push_back({name, bytes.size(), checksum(bytes)});
         }
-    }));
+    });
 
     std::ostringstream description;
     for (const auto &file : mine)
       description << file.name << ' ' << file.size << ' ' << file.checksum
                   << ' ';
     const auto all = Utilities::MPI::gather(communicator, description.str());
-    check(attempt([&]() {
+    do_together([&]() {
       if (rank != 0)
         return;
       manifest.files.clear();
@@ -332,7 +305,7 @@ namespace Viscoplastic
       if (!aside.empty())
         remove_own(aside, remarks);
       remove_before(manifest.n, n_kept, remarks);
-    }));
+    });
     return Utilities::MPI::broadcast(communicator, remarks);
   }
 
@@ -352,29 +325,34 @@ namespace Viscoplastic
     std::reverse(candidates.begin(), candidates.end());
     for (const unsigned int n : candidates)
       {
-        // Rank 0 reads, so that all see the same.
-        std::string text, failure;
-        if (rank == 0)
-          failure =
-            attempt([&]() { text = read_file(path(n) + '/' + manifest_name); });
-        text = Utilities::MPI::broadcast(communicator, text);
+        std::string        text;
         CheckpointManifest manifest;
-        if (failure.empty())
-          failure = attempt([&]() {
-            manifest = CheckpointManifest::of_text(text);
-            AssertThrow(manifest.n == n,
-                        ExcMessage("it is of step " +
-                                   std::to_string(manifest.n)));
-            for (std::size_t i = rank; i < manifest.files.size(); i += n_ranks)
-              read_checked(path(n) + '/', manifest.files[i]);
-          });
-        failure = common_failure(failure, communicator);
-        if (failure.empty())
-          return manifest;
-        if (failure.back() == '.')
-          failure.pop_back();
-        remarks.push_back("the checkpoint '" + path(n) +
-                          "' cannot be used: " + failure);
+        try
+          {
+            // Rank 0 reads, so that all see the same.
+            fail_together(communicator, [&]() {
+              if (rank == 0)
+                text = read_file(path(n) + '/' + manifest_name);
+            });
+            text = Utilities::MPI::broadcast(communicator, text);
+            fail_together(communicator, [&]() {
+              manifest = CheckpointManifest::of_text(text);
+              require(manifest.n == n,
+                      "it is of step " + std::to_string(manifest.n));
+              for (std::size_t i = rank; i < manifest.files.size();
+                   i += n_ranks)
+                read_checked(path(n) + '/', manifest.files[i]);
+            });
+            return manifest;
+          }
+        catch (const std::exception &exception)
+          {
+            std::string why = reason(exception);
+            if (why.back() == '.')
+              why.pop_back();
+            remarks.push_back("the checkpoint '" + path(n) +
+                              "' cannot be used: " + why);
+          }
       }
     return {};
   }
@@ -388,8 +366,7 @@ namespace Viscoplastic
     for (const auto &file : manifest.files)
       if (file.name == name)
         return read_checked(path(manifest.n) + '/', file);
-    AssertThrow(false, ExcMessage("The checkpoint has no file " + name + "."));
-    return "";
+    refuse("The checkpoint has no file " + name + ".");
   }
 
 
@@ -398,27 +375,26 @@ namespace Viscoplastic
   CheckpointStore::remove_others(const unsigned int n,
                                  const unsigned int n_kept) const
   {
-    Removal            removal;
-    std::vector<Entry> found; // on rank 0
+    Removal removal;
     fail_together(communicator, [&]() {
-      if (rank == 0)
-        found = entries();
-    });
-    const std::string failure = attempt([&]() {
-      for (const Entry &entry : found)
-        if (n_kept == 0 || entry.n > n || !entry.is_complete)
-          {
-            const bool was_ours = remove_own(entry.path, removal.remarks);
-            if (was_ours && entry.is_complete)
+      if (rank != 0)
+        return;
+      const std::vector<Entry> found = entries();
+      try
+        {
+          for (const Entry &entry : found)
+            if ((n_kept == 0 || entry.n > n || !entry.is_complete) &&
+                remove_own(entry.path, removal.remarks) && entry.is_complete)
               ++removal.n_checkpoints;
-          }
-      if (rank == 0 && n_kept > 0)
-        remove_before(n, n_kept, removal.remarks);
+          if (n_kept > 0)
+            remove_before(n, n_kept, removal.remarks);
+        }
+      catch (const std::exception &exception)
+        {
+          refuse("Old checkpoints in '" + directory +
+                 "' cannot be removed: " + reason(exception));
+        }
     });
-    const std::string text = common_failure(failure, communicator);
-    AssertThrow(text.empty(),
-                ExcMessage("Old checkpoints in '" + directory +
-                           "' cannot be removed: " + text));
     removal.n_checkpoints =
       Utilities::MPI::broadcast(communicator, removal.n_checkpoints);
     removal.remarks = Utilities::MPI::broadcast(communicator, removal.remarks);

@@ -13,21 +13,9 @@ namespace Viscoplastic
       std::string(program_version) + " (" + git_revision + ")";
 
     std::string
-    mesh_file(const unsigned int rank)
+    file_of_rank(const std::string &kind, const unsigned int rank)
     {
-      return "mesh_" + Utilities::int_to_string(rank, 5) + ".bin";
-    }
-
-    std::string
-    fields_file(const unsigned int rank)
-    {
-      return "fields_" + Utilities::int_to_string(rank, 5) + ".bin";
-    }
-
-    std::string
-    quantity_file(const unsigned int rank)
-    {
-      return "quantity_" + Utilities::int_to_string(rank, 5) + ".bin";
+      return kind + '_' + Utilities::int_to_string(rank, 5) + ".bin";
     }
 
 
@@ -156,11 +144,10 @@ namespace Viscoplastic
                                     state.n <= schedule.n_steps() &&
                                       schedule.step(state.n).t == state.t &&
                                       schedule.step(state.n).k == state.k);
-      AssertThrow(is_on_schedule,
-                  ExcMessage(
-                    "'Time/Phases' = " + run.scene.parameters.time.phases +
-                    " does not contain the step of the checkpoint '" + path +
-                    "'; change only what comes after it."));
+      require(is_on_schedule,
+              "'Time/Phases' = " + run.scene.parameters.time.phases +
+                " does not contain the step of the checkpoint '" + path +
+                "'; change only what comes after it.");
     }
 
 
@@ -313,9 +300,9 @@ namespace Viscoplastic
     manifest.version    = version;
     manifest.parameters = values_with_tables(run.scene.parameters);
 
-    packed.files[mesh_file(rank)] = pack_mesh(triangulation);
-    StepperMemory<dim> memory     = time_stepper.memory();
-    packed.files[fields_file(rank)] =
+    packed.files[file_of_rank("mesh", rank)] = pack_mesh(triangulation);
+    StepperMemory<dim> memory                = time_stepper.memory();
+    packed.files[file_of_rank("fields", rank)] =
       pack_fields(discretization.stress_space,
                   discretization.face.get(),
                   state,
@@ -324,7 +311,7 @@ namespace Viscoplastic
     const State<dim> of_quantity =
       fields_of_quantity<dim>(memory.quantity, state.contact);
     if (run.scene.quantity)
-      packed.files[quantity_file(rank)] =
+      packed.files[file_of_rank("quantity", rank)] =
         pack_fields(discretization.stress_space,
                     discretization.face.get(),
                     of_quantity,
@@ -365,22 +352,21 @@ namespace Viscoplastic
   {
     const std::string path = store.path(checkpoint.n),
                       name = "The checkpoint '" + path + "'";
-    AssertThrow(checkpoint.dimension == dim && changes.forbidden.empty(),
-                ExcMessage(name + " cannot go on with other unknowns: " +
-                           enumeration(changes.forbidden) +
-                           "; undo that, or begin without --restart."));
+    require(checkpoint.dimension == dim && changes.forbidden.empty(),
+            name + " cannot go on with other unknowns: " +
+              enumeration(changes.forbidden) +
+              "; undo that, or begin without --restart.");
     BinaryReader archive(store.read(checkpoint, run_file));
     CoarseMesh   coarse_mesh;
     archive &coarse_mesh.topology &coarse_mesh.vertices;
-    AssertThrow(coarse_mesh.agrees_with(describe_coarse_mesh(triangulation)),
-                ExcMessage(name + " belongs to another coarse mesh."));
+    require(coarse_mesh.agrees_with(describe_coarse_mesh(triangulation)),
+            name + " belongs to another coarse mesh.");
     for (bool &has_field : has_nodal_field)
       archive &has_field;
-    AssertThrow(has_nodal_field[3] == run.scene.keeps_friction_work(),
-                ExcMessage(name +
-                           " cannot go on with another sum: `friction work' "
-                           "among 'Output/Additional fields' has to be there "
-                           "from the beginning or not at all."));
+    require(has_nodal_field[3] == run.scene.keeps_friction_work(),
+            name + " cannot go on with another sum: `friction work' among "
+                   "'Output/Additional fields' has to be there from the "
+                   "beginning or not at all.");
     archive &has_estimate &output_times &earlier_seconds;
     exchange_run(archive, run);
     exchange_memory(archive, memory);
@@ -389,7 +375,7 @@ namespace Viscoplastic
     has_bytes_to_spare = !archive.is_at_end();
     check_schedule(run, path);
     for (unsigned int r = 0; r < checkpoint.n_ranks; ++r)
-      meshes.push_back(store.read(checkpoint, mesh_file(r)));
+      meshes.push_back(store.read(checkpoint, file_of_rank("mesh", r)));
     restore_mesh(meshes, triangulation);
   }
 
@@ -410,7 +396,8 @@ namespace Viscoplastic
                           has_estimate,
                           ErrorEstimator<dim>::has_sample_fields(run.scene)};
       for (unsigned int r = begin; r < end; ++r)
-        packed.fields.push_back(store.read(checkpoint, fields_file(r)));
+        packed.fields.push_back(
+          store.read(checkpoint, file_of_rank("fields", r)));
       bool complete =
         unpack_fields(packed,
                       discretization.stress_space,
@@ -422,7 +409,8 @@ namespace Viscoplastic
         {
           packed.fields.clear();
           for (unsigned int r = begin; r < end; ++r)
-            packed.fields.push_back(store.read(checkpoint, quantity_file(r)));
+            packed.fields.push_back(
+              store.read(checkpoint, file_of_rank("quantity", r)));
           const bool has_state    = has_field_of_quantity[0];
           packed.has_nodal_field  = has_field_of_quantity;
           packed.has_sample_field = {{has_state,
@@ -446,14 +434,14 @@ namespace Viscoplastic
           if (memory.quantity.linearized)
             memory.quantity.linearized = std::move(fields);
         }
-      return Utilities::MPI::min(complete ? 1 : 0, communicator) == 1;
+      return !Utilities::MPI::logical_or(!complete, communicator);
     };
     // On as many ranks as before, each finds all in its own file.
-    AssertThrow(((n_ranks == checkpoint.n_ranks && unpack(rank, rank + 1)) ||
-                 unpack(0, checkpoint.n_ranks)) &&
-                  !has_bytes_to_spare,
-                ExcMessage("The checkpoint '" + store.path(checkpoint.n) +
-                           "' does not fit the scene."));
+    require(((n_ranks == checkpoint.n_ranks && unpack(rank, rank + 1)) ||
+             unpack(0, checkpoint.n_ranks)) &&
+              !has_bytes_to_spare,
+            "The checkpoint '" + store.path(checkpoint.n) +
+              "' does not fit the scene.");
     if (changes.of_data) // of other tangents
       memory.quantity = {};
     return memory;

@@ -2,7 +2,6 @@
 #include <viscoplastic_contact/base/messages.h>
 #include <viscoplastic_contact/laws/backward_euler.h>
 
-#include <sstream>
 
 namespace Viscoplastic
 {
@@ -178,15 +177,11 @@ namespace Viscoplastic
           }
         step *= 0.25;
         if (step < 1e-8 || n >= most_steps_in_k)
-          {
-            std::ostringstream message;
-            message << "The stress of backward Euler at x = (" << point.x
-                    << "), t = " << point.t
-                    << " cannot be found for the time step " << k
-                    << ": its law of flow may soften or jump there; take "
-                       "shorter steps.";
-            AssertThrow(false, ExcMessage(message.str()));
-          }
+          refuse("The stress of backward Euler at x = (" + as_text(point.x) +
+                 "), t = " + as_text(point.t) +
+                 " cannot be found for the time step " + as_text(k) +
+                 ": its law of flow may soften or jump there; take shorter "
+                 "steps.");
       }
     return z;
   }

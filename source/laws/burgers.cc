@@ -241,39 +241,19 @@ namespace Viscoplastic
 
 
 
-    struct Entry
-    {
-      const char *name, *value, *help, *unit;
-    };
-
-    void
-    declare(ParameterHandler &prm, const std::vector<Entry> &entries)
-    {
-      for (const auto &[entry, value, help, unit] : entries)
-        prm.declare_entry(entry,
-                          value,
-                          Patterns::Anything(),
-                          help + std::string(". Unit: ") + unit + ".");
-    }
-
-    void
-    declare_burgers(ParameterHandler &prm)
-    {
-      declare(prm,
-              {{"Maxwell viscosity",
-                "1",
-                "The shear viscosity eta_M > 0 of steady creep",
-                "stress times time"},
-               {"Kelvin modulus",
-                "1",
-                "The shear modulus G_K > 0, from which transient creep comes "
-                "back",
-                "stress"},
-               {"Kelvin viscosity",
-                "1",
-                "The shear viscosity eta_K > 0 of transient creep",
-                "stress times time"}});
-    }
+    const std::vector<DeclaredEntry> linear_entries{
+      {"Maxwell viscosity",
+       "1",
+       "The shear viscosity eta_M > 0 of steady creep. Unit: stress times "
+       "time."},
+      {"Kelvin modulus",
+       "1",
+       "The shear modulus G_K > 0, from which transient creep comes back. "
+       "Unit: stress."},
+      {"Kelvin viscosity",
+       "1",
+       "The shear viscosity eta_K > 0 of transient creep. Unit: stress times "
+       "time."}};
   } // namespace
 
 
@@ -281,18 +261,15 @@ namespace Viscoplastic
   LawDescription
   burgers_description()
   {
-    LawDescription law;
-    law.name = "burgers";
-    law.help =
-      "G = -E (dev(sigma)/(2 eta_M) + e'), e' = (dev(sigma) - 2 G_K "
-      "e)/(2 eta_K): steady creep after a transient one, whose strain e "
-      "comes back when the load has gone. (Findley, Lai, Onaran, as of "
-      "maxwell.)";
-    law.declare = declare_burgers;
-    law.make    = [](const LawSection &section) {
-      return std::make_unique<Burgers>(section, /* is_linear = */ true);
-    };
-    return law;
+    return {"burgers",
+            "G = -E (dev(sigma)/(2 eta_M) + e'), e' = (dev(sigma) - 2 G_K "
+            "e)/(2 eta_K): steady creep after a transient one, whose strain e "
+            "comes back when the load has gone. (Findley, Lai, Onaran, as of "
+            "maxwell.)",
+            declare_entries(linear_entries),
+            [](const LawSection &section) {
+              return std::make_unique<Burgers>(section, /* is_linear = */ true);
+            }};
   }
 
 
@@ -300,29 +277,26 @@ namespace Viscoplastic
   LawDescription
   lubby2_description()
   {
-    LawDescription law;
-    law.name = "lubby2";
-    law.help =
-      "burgers for rock salt: eta_M, G_K and eta_K, given for small "
-      "stresses, are multiplied by exp(m sigma_eq), exp(k_1 sigma_eq) "
-      "and exp(k_2 sigma_eq) with the von Mises stress sigma_eq. (Lux, "
-      "Gebirgsmechanischer Entwurf und Felderfahrungen im "
-      "Salzkavernenbau, 1984.)";
-    law.declare = [](ParameterHandler &prm) {
-      declare_burgers(prm);
-      declare(prm,
-              {{"Maxwell viscosity exponent", "0", "m <= 0", "1/stress"},
-               {"Kelvin modulus exponent", "0", "k_1 <= 0", "1/stress"},
-               {"Kelvin viscosity exponent", "0", "k_2 <= 0", "1/stress"},
-               {"Stress cap",
-                "10",
-                "The von Mises stress beyond which these factors stay as they "
-                "are",
-                "stress"}});
-    };
-    law.make = [](const LawSection &section) {
-      return std::make_unique<Burgers>(section, /* is_linear = */ false);
-    };
-    return law;
+    std::vector<DeclaredEntry> entries(linear_entries);
+    entries.insert(
+      entries.end(),
+      {{"Maxwell viscosity exponent", "0", "m <= 0. Unit: 1/stress."},
+       {"Kelvin modulus exponent", "0", "k_1 <= 0. Unit: 1/stress."},
+       {"Kelvin viscosity exponent", "0", "k_2 <= 0. Unit: 1/stress."},
+       {"Stress cap",
+        "10",
+        "The von Mises stress beyond which these factors stay as they are. "
+        "Unit: stress."}});
+    return {"lubby2",
+            "burgers for rock salt: eta_M, G_K and eta_K, given for small "
+            "stresses, are multiplied by exp(m sigma_eq), exp(k_1 sigma_eq) "
+            "and exp(k_2 sigma_eq) with the von Mises stress sigma_eq. (Lux, "
+            "Gebirgsmechanischer Entwurf und Felderfahrungen im "
+            "Salzkavernenbau, 1984.)",
+            declare_entries(entries),
+            [](const LawSection &section) {
+              return std::make_unique<Burgers>(section,
+                                               /* is_linear = */ false);
+            }};
   }
 } // namespace Viscoplastic

@@ -43,23 +43,15 @@ namespace Viscoplastic
   LawDescription
   maxwell_description()
   {
-    LawDescription law;
-    law.name = "maxwell";
-    law.help =
-      "G = -E dev(sigma)/(2 eta): a linear viscoelastic fluid, elastic "
-      "under pressure. At fixed strain the deviator of the stress decays "
-      "like exp(-t mu/eta). (Findley, Lai, Onaran, Creep and Relaxation "
-      "of Nonlinear Viscoelastic Materials, 1976, chapter 5.)";
-    law.declare = [](ParameterHandler &prm) {
-      prm.declare_entry("Viscosity",
-                        "0.5",
-                        Patterns::Anything(),
-                        "The shear viscosity eta > 0. Unit: stress times "
-                        "time.");
-    };
-    law.make = [](const LawSection &section) {
-      return std::make_unique<Maxwell>(section);
-    };
-    return law;
+    return {"maxwell",
+            "G = -E dev(sigma)/(2 eta): a linear viscoelastic fluid, elastic "
+            "under pressure. At fixed strain the deviator of the stress decays "
+            "like exp(-t mu/eta). (Findley, Lai, Onaran, Creep and Relaxation "
+            "of Nonlinear Viscoelastic Materials, 1976, chapter 5.)",
+            declare_entries({{"Viscosity",
+                              "0.5",
+                              "The shear viscosity eta > 0. Unit: stress times "
+                              "time."}}),
+            make_law<Maxwell>};
   }
 } // namespace Viscoplastic

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <viscoplastic_contact/base/messages.h>
 #include <viscoplastic_contact/laws/pointwise_law.h>
 
 #include <algorithm>
-#include <sstream>
 
 namespace Viscoplastic
 {
@@ -152,15 +152,12 @@ namespace Viscoplastic
       {
         const double value = f.value(state, point.t, point.temperature);
         if (!(value >= 0))
-          {
-            std::ostringstream message;
-            message << "'" << name << "' is " << value
-                    << " at sigma_eq = " << state[0] << ", p = " << state[1]
-                    << ", eps_eq = " << state[2] << ", t = " << point.t
-                    << "; it must be zero or positive, since flow against the "
-                       "stress would create energy.";
-            AssertThrow(false, ExcMessage(message.str()));
-          }
+          refuse("'" + name + "' is " + as_text(value) + " at sigma_eq = " +
+                 as_text(state[0]) + ", p = " + as_text(state[1]) +
+                 ", eps_eq = " + as_text(state[2]) +
+                 ", t = " + as_text(point.t) +
+                 "; it must be zero or positive, since flow against the "
+                 "stress would create energy.");
         return value;
       }
 
@@ -207,33 +204,23 @@ namespace Viscoplastic
   LawDescription
   parsed_description()
   {
-    LawDescription law;
-    law.name = "parsed";
-    law.help =
-      "G = -E (3/2) F f dev(sigma)/sigma_eq with an equivalent strain "
-      "rate f(sigma_eq, p, eps_eq, t) of your own and a `Factor' F. "
-      "sigma_eq is the von Mises stress, p = -tr(sigma)/3 the pressure, "
-      "eps_eq = sqrt(2/3) |dev(eps - E^-1 sigma)| the present equivalent "
-      "viscoplastic strain. Let f vanish at sigma_eq = 0 and limit "
-      "powers (the theory asks for a Lipschitz function), as in "
-      "1e-3*min(sigma_eq, 2e7)^3. Examples: "
-      "1e-21*sigma_eq^2*exp(-eps_eq/0.1) for primary creep, 1e-12*max(0, "
-      "sigma_eq - 1e6 - 0.5*p) for flow beyond a yield stress that grows "
-      "with pressure.";
-    law.declare = [](ParameterHandler &prm) {
-      prm.declare_entry("Strain rate",
-                        "sigma_eq",
-                        Patterns::Anything(),
-                        "f >= 0, an expression of sigma_eq, p, eps_eq, the "
-                        "temperature T and t. Unit: 1/time.");
-      prm.declare_entry("Factor",
-                        "1",
-                        Patterns::Anything(),
-                        "F >= 0. Unit: 1.");
-    };
-    law.make = [](const LawSection &section) {
-      return std::make_unique<Parsed>(section);
-    };
-    return law;
+    return {"parsed",
+            "G = -E (3/2) F f dev(sigma)/sigma_eq with an equivalent strain "
+            "rate f(sigma_eq, p, eps_eq, t) of your own and a `Factor' F. "
+            "sigma_eq is the von Mises stress, p = -tr(sigma)/3 the pressure, "
+            "eps_eq = sqrt(2/3) |dev(eps - E^-1 sigma)| the present equivalent "
+            "viscoplastic strain. Let f vanish at sigma_eq = 0 and limit "
+            "powers (the theory asks for a Lipschitz function), as in "
+            "1e-3*min(sigma_eq, 2e7)^3. Examples: "
+            "1e-21*sigma_eq^2*exp(-eps_eq/0.1) for primary creep, 1e-12*max(0, "
+            "sigma_eq - 1e6 - 0.5*p) for flow beyond a yield stress that grows "
+            "with pressure.",
+            declare_entries(
+              {{"Strain rate",
+                "sigma_eq",
+                "f >= 0, an expression of sigma_eq, p, eps_eq, the "
+                "temperature T and t. Unit: 1/time."},
+               {"Factor", "1", "F >= 0. Unit: 1."}}),
+            make_law<Parsed>};
   }
 } // namespace Viscoplastic

@@ -152,37 +152,23 @@ namespace Viscoplastic
   LawDescription
   perzyna_description()
   {
-    LawDescription law;
-    law.name = "perzyna";
-    law.help =
-      "G = -(1/lambda) E (sigma - P_K sigma), where P_K projects on the "
-      "elastic range |dev(sigma)| <= R = k_Y + H eps_eq (Frobenius "
-      "norm), eps_eq = sqrt(2/3) |dev(eps - E^-1 sigma)| the present "
-      "equivalent viscoplastic strain: flow that returns softens again. "
-      "k_Y is the yield stress of a tensile test times sqrt(2/3), of a "
-      "shear test times sqrt(2); H the slope of the tensile one over "
-      "eps_eq times sqrt(2/3); lambda twice the shear viscosity beyond "
-      "the range. (Perzyna, Advances in Applied Mechanics 9, 1966, "
-      "243-377; Duvaut, Lions, Inequalities in Mechanics and Physics, "
-      "1976, chapter 5.)";
-    law.declare = [](ParameterHandler &prm) {
-      prm.declare_entry("Yield radius",
-                        "0.1",
-                        Patterns::Anything(),
-                        "The radius k_Y >= 0 of the elastic range. Unit: "
-                        "stress.");
-      prm.declare_entry("Hardening modulus",
-                        "0",
-                        Patterns::Anything(),
-                        "H >= 0. Unit: stress.");
-      prm.declare_entry("Viscosity",
-                        "1",
-                        Patterns::Anything(),
-                        "lambda > 0. Unit: stress times time.");
-    };
-    law.make = [](const LawSection &section) {
-      return std::make_unique<Perzyna>(section);
-    };
-    return law;
+    return {"perzyna",
+            "G = -(1/lambda) E (sigma - P_K sigma), where P_K projects on the "
+            "elastic range |dev(sigma)| <= R = k_Y + H eps_eq (Frobenius "
+            "norm), eps_eq = sqrt(2/3) |dev(eps - E^-1 sigma)| the present "
+            "equivalent viscoplastic strain: flow that returns softens again. "
+            "k_Y is the yield stress of a tensile test times sqrt(2/3), of a "
+            "shear test times sqrt(2); H the slope of the tensile one over "
+            "eps_eq times sqrt(2/3); lambda twice the shear viscosity beyond "
+            "the range. (Perzyna, Advances in Applied Mechanics 9, 1966, "
+            "243-377; Duvaut, Lions, Inequalities in Mechanics and Physics, "
+            "1976, chapter 5.)",
+            declare_entries(
+              {{"Yield radius",
+                "0.1",
+                "The radius k_Y >= 0 of the elastic range. Unit: stress."},
+               {"Hardening modulus", "0", "H >= 0. Unit: stress."},
+               {"Viscosity", "1", "lambda > 0. Unit: stress times time."}}),
+            make_law<Perzyna>};
   }
 } // namespace Viscoplastic

@@ -2,11 +2,11 @@
 #include <deal.II/lac/lapack_full_matrix.h>
 #include <deal.II/lac/vector.h>
 
+#include <viscoplastic_contact/base/messages.h>
 #include <viscoplastic_contact/base/number_range.h>
 #include <viscoplastic_contact/laws/stiffness.h>
 
 #include <algorithm>
-#include <sstream>
 #include <utility>
 
 namespace Viscoplastic
@@ -69,22 +69,21 @@ namespace Viscoplastic
     for (unsigned int i = 0; i < 6; ++i)
       for (unsigned int j = 0; j < 6; ++j)
         {
-          std::ostringstream message;
-          message << "The Voigt matrix has " << voigt(i, j) << " in row "
-                  << i + 1 << ", column " << j + 1 << ", and " << voigt(j, i)
-                  << " in row " << j + 1 << ", column " << i + 1
-                  << "; it must be symmetric and finite.";
+          const std::string row    = std::to_string(i + 1),
+                            column = std::to_string(j + 1);
           // Rounding of matrices that a program has written is no asymmetry.
           // Written so that NaN is refused, too.
-          AssertThrow(std::fabs(voigt(i, j) - voigt(j, i)) <= 1e-8 * scale &&
-                        std::isfinite(scale),
-                      ExcMessage(message.str()));
+          require(std::fabs(voigt(i, j) - voigt(j, i)) <= 1e-8 * scale &&
+                    std::isfinite(scale),
+                  "The Voigt matrix has " + as_text(voigt(i, j)) + " in row " +
+                    row + ", column " + column + ", and " +
+                    as_text(voigt(j, i)) + " in row " + column + ", column " +
+                    row + "; it must be symmetric and finite.");
         }
-    AssertThrow(scale >= least_modulus && scale <= largest_modulus,
-                ExcMessage(out_of_range("The norm of the Voigt matrix",
-                                        scale,
-                                        least_modulus,
-                                        largest_modulus)));
+    require_in_range("The norm of the Voigt matrix",
+                     scale,
+                     least_modulus,
+                     largest_modulus);
 
     // With engineering shears, Voigt's matrix holds the components themselves.
     constexpr std::array<std::pair<unsigned int, unsigned int>, 6> axes = {
@@ -95,14 +94,12 @@ namespace Viscoplastic
         data->stiffness[axes[i].first][axes[i].second][axes[j].first]
                        [axes[j].second] = (voigt(i, j) + voigt(j, i)) / 2;
 
-    const Spectrum     eigen = spectrum(data->stiffness);
-    std::ostringstream message;
-    message << "The smallest eigenvalue of the elastic tensor that the Voigt "
-               "matrix gives is "
-            << eigen.values[0] << ", the largest " << eigen.values[5]
-            << "; it must be positive definite.";
-    AssertThrow(eigen.values[0] > 1e-12 * eigen.values[5],
-                ExcMessage(message.str()));
+    const Spectrum eigen = spectrum(data->stiffness);
+    require(eigen.values[0] > 1e-12 * eigen.values[5],
+            "The smallest eigenvalue of the elastic tensor that the Voigt "
+            "matrix gives is " +
+              as_text(eigen.values[0]) + ", the largest " +
+              as_text(eigen.values[5]) + "; it must be positive definite.");
     for (unsigned int mode = 0; mode < 6; ++mode)
       data->compliance += outer_product(eigen.modes[mode], eigen.modes[mode]) /
                           eigen.values[mode];

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <deal.II/lac/vector.h>
 
+#include <viscoplastic_contact/base/messages.h>
 #include <viscoplastic_contact/base/subsection.h>
 #include <viscoplastic_contact/laws/viscoplastic_law.h>
 
 #include <algorithm>
-#include <sstream>
 #include <utility>
 
 // The registry, one line a law: the file source/laws/<name>.cc defines
@@ -74,16 +74,14 @@ namespace Viscoplastic
     const double value = expression->value(x, t, temperature);
 
     const auto check = [&](const bool holds, const std::string &allowed) {
-      if (holds)
-        return;
-      std::ostringstream message;
-      message << "'" << name << "' is " << value;
-      if (depends_on_position() || depends_on_time())
-        message << " at x = (" << x << "), t = " << t;
-      if (depends_on_temperature())
-        message << " for T = " << temperature;
-      message << "; it must be " << allowed << ".";
-      AssertThrow(false, ExcMessage(message.str()));
+      if (!holds)
+        refuse(
+          "'" + name + "' is " + as_text(value) +
+          (depends_on_position() || depends_on_time() ?
+             " at x = (" + as_text(x) + "), t = " + as_text(t) :
+             "") +
+          (depends_on_temperature() ? " for T = " + as_text(temperature) : "") +
+          "; it must be " + allowed + ".");
     };
     switch (range)
       {
@@ -117,9 +115,9 @@ namespace Viscoplastic
     , parameters(std::move(parameters_))
   {
     AssertIndexRange(parameters.size(), LawPoint().parameters.size() + 1);
-    AssertThrow(n_history_variables <= no_history.n_independent_components,
-                ExcMessage("A law has " + std::to_string(n_history_variables) +
-                           " history variables; six are the most."));
+    require(n_history_variables <= no_history.n_independent_components,
+            "A law has " + std::to_string(n_history_variables) +
+              " history variables; six are the most.");
   }
 
 
@@ -143,9 +141,7 @@ namespace Viscoplastic
   {
     return std::any_of(parameters.begin(),
                        parameters.end(),
-                       [](const LawParameter &p) {
-                         return p.depends_on_position();
-                       });
+                       std::mem_fn(&LawParameter::depends_on_position));
   }
 
 
@@ -155,9 +151,7 @@ namespace Viscoplastic
   {
     return std::any_of(parameters.begin(),
                        parameters.end(),
-                       [](const LawParameter &p) {
-                         return p.depends_on_temperature();
-                       });
+                       std::mem_fn(&LawParameter::depends_on_temperature));
   }
 
 
@@ -167,9 +161,7 @@ namespace Viscoplastic
   {
     return std::any_of(parameters.begin(),
                        parameters.end(),
-                       [](const LawParameter &p) {
-                         return p.depends_on_time();
-                       });
+                       std::mem_fn(&LawParameter::depends_on_time));
   }
 
 
@@ -251,10 +243,8 @@ namespace Viscoplastic
             break;
           }
       }
-    AssertThrow(false,
-                ExcMessage("The history variables of a step of backward Euler "
-                           "cannot be found; take shorter steps."));
-    return alpha;
+    refuse("The history variables of a step of backward Euler cannot be found; "
+           "take shorter steps.");
   }
 
 
@@ -394,10 +384,7 @@ namespace Viscoplastic
           return law.make({prm, section + "/" + law.name, dim});
         }
 
-    AssertThrow(false,
-                ExcMessage("There is no viscoplastic law `" + name +
-                           "'; the laws are " + viscoplastic_law_names(laws) +
-                           "."));
-    return nullptr;
+    refuse("There is no viscoplastic law `" + name + "'; the laws are " +
+           viscoplastic_law_names(laws) + ".");
   }
 } // namespace Viscoplastic

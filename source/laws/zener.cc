@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <viscoplastic_contact/base/messages.h>
 #include <viscoplastic_contact/laws/pointwise_law.h>
 
 #include <algorithm>
@@ -6,7 +7,6 @@
 #include <cmath>
 #include <limits>
 #include <optional>
-#include <sstream>
 
 namespace Viscoplastic
 {
@@ -211,10 +211,10 @@ namespace Viscoplastic
              {section, "Relaxation time", LawParameter::Range::positive}})
       {
         for (const auto modulus : {youngs_modulus, poissons_ratio})
-          AssertThrow(!parameters[modulus].depends_on_time(),
-                      ExcMessage("'" + parameters[modulus].get_name() +
-                                 "' depends on t; elastic moduli must be "
-                                 "functions of position only."));
+          require(!parameters[modulus].depends_on_time(),
+                  "'" + parameters[modulus].get_name() +
+                    "' depends on t; elastic moduli must be functions of "
+                    "position only.");
       }
 
       void
@@ -224,33 +224,30 @@ namespace Viscoplastic
         const double       smallest = spring.smallest_eigenvalue();
         if (smallest >= -spring.tolerance)
           return;
-        std::ostringstream message;
-        message << "'" << parameters[youngs_modulus].get_name()
-                << "' = " << point.parameters[youngs_modulus]
-                << " with Poisson's ratio " << point.parameters[poissons_ratio]
-                << " makes the body stiffer in the long term than at once, at "
-                   "x = ("
-                << point.x << "): ";
+        const double E_inf = point.parameters[youngs_modulus];
         const double modulus =
           2. * (1. + stiffness.poissons_ratio()) * stiffness.shear_modulus();
-        if (stiffness.is_isotropic() &&
-            modulus < point.parameters[youngs_modulus])
-          message << "Young's modulus is " << modulus
-                  << "; it must not be below the long-term one.";
+        std::string why = "the smallest eigenvalue of E - E_inf is " +
+                          as_text(smallest) + "; it must be zero or positive.";
+        if (stiffness.is_isotropic() && modulus < E_inf)
+          why = "Young's modulus is " + as_text(modulus) +
+                "; it must not be below the long-term one.";
         else if (stiffness.is_isotropic())
           {
             // mu_inf <= mu and K_inf <= K, in numbers of four digits.
-            const double E_inf = point.parameters[youngs_modulus],
-                         least = E_inf / (2. * stiffness.shear_modulus()) - 1.,
+            const double least = E_inf / (2. * stiffness.shear_modulus()) - 1.,
                          most  = 0.5 - E_inf / (6. * stiffness.bulk_modulus());
-            message << "with this Young's modulus the ratio must be at least "
-                    << std::ceil(1e4 * least - 1e-6) / 1e4 << " and at most "
-                    << std::floor(1e4 * most + 1e-6) / 1e4 << '.';
+            why = "with this Young's modulus the ratio must be at least " +
+                  as_text(std::ceil(1e4 * least - 1e-6) / 1e4) +
+                  " and at most " +
+                  as_text(std::floor(1e4 * most + 1e-6) / 1e4) + '.';
           }
-        else
-          message << "the smallest eigenvalue of E - E_inf is " << smallest
-                  << "; it must be zero or positive.";
-        AssertThrow(false, ExcMessage(message.str()));
+        refuse("'" + parameters[youngs_modulus].get_name() +
+               "' = " + as_text(E_inf) + " with Poisson's ratio " +
+               as_text(point.parameters[poissons_ratio]) +
+               " makes the body stiffer in the long term than at once, at x "
+               "= (" +
+               as_text(point.x) + "): " + why);
       }
 
       SymmetricTensor<2, 3>
@@ -354,34 +351,24 @@ namespace Viscoplastic
   LawDescription
   zener_description()
   {
-    LawDescription law;
-    law.name = "zener";
-    law.help =
+    return {
+      "zener",
       "G = -(1/theta) (sigma - E_inf eps), the standard linear solid: "
       "the elastic tensor E at once, the isotropic tensor E_inf in the "
       "long term, pressure included. At fixed strain the stress decays "
       "like exp(-t/theta) to E_inf eps. Bulk and shear modulus must not "
       "exceed those of E; one that equals that of E does not relax. "
-      "(Zener, Elasticity and Anelasticity of Metals, 1948, chapter 5.)";
-    law.declare = [](ParameterHandler &prm) {
-      prm.declare_entry("Long-term Young's modulus",
-                        "0.5",
-                        Patterns::Anything(),
-                        "Young's modulus of E_inf, zero or positive, of "
-                        "position alone. Unit: stress.");
-      prm.declare_entry("Long-term Poisson's ratio",
-                        "0.3",
-                        Patterns::Anything(),
-                        "Poisson's ratio of E_inf in (-1, 1/2), likewise. "
-                        "Unit: 1.");
-      prm.declare_entry("Relaxation time",
-                        "1",
-                        Patterns::Anything(),
-                        "theta > 0 at fixed strain. Unit: time.");
-    };
-    law.make = [](const LawSection &section) {
-      return std::make_unique<Zener>(section);
-    };
-    return law;
+      "(Zener, Elasticity and Anelasticity of Metals, 1948, chapter 5.)",
+      declare_entries(
+        {{"Long-term Young's modulus",
+          "0.5",
+          "Young's modulus of E_inf, zero or positive, of "
+          "position alone. Unit: stress."},
+         {"Long-term Poisson's ratio",
+          "0.3",
+          "Poisson's ratio of E_inf in (-1, 1/2), likewise. "
+          "Unit: 1."},
+         {"Relaxation time", "1", "theta > 0 at fixed strain. Unit: time."}}),
+      make_law<Zener>};
   }
 } // namespace Viscoplastic

@@ -3,13 +3,13 @@
 #include <deal.II/base/mpi.h>
 #include <deal.II/base/quadrature_lib.h>
 
+#include <viscoplastic_contact/base/messages.h>
 #include <viscoplastic_contact/base/number_range.h>
 #include <viscoplastic_contact/base/types.h>
 #include <viscoplastic_contact/mesh/mesh_check.h>
 
 #include <cmath>
 #include <limits>
-#include <sstream>
 #include <vector>
 
 namespace Viscoplastic
@@ -66,17 +66,16 @@ namespace Viscoplastic
               }
           smallest = std::min(smallest, extent);
         }
-      AssertThrow(largest <= largest_length,
-                  ExcMessage(out_of_range("The largest coordinate of the mesh",
-                                          largest,
-                                          -largest_length,
-                                          largest_length)));
+      require_in_range("The largest coordinate of the mesh",
+                       largest,
+                       -largest_length,
+                       largest_length);
       // Vertices that coincide are refused as such.
-      AssertThrow(smallest >= least_length || smallest == 0.,
-                  ExcMessage(out_of_range("The size of the smallest cell",
-                                          smallest,
-                                          least_length,
-                                          largest_length)));
+      if (smallest > 0.)
+        require_in_range("The size of the smallest cell",
+                         smallest,
+                         least_length,
+                         largest_length);
     }
 
 
@@ -108,15 +107,12 @@ namespace Viscoplastic
       if (extreme.min > limit)
         return;
       where = Utilities::MPI::broadcast(comm, where, extreme.min_index);
-      std::ostringstream message;
-      message << "The cell of the mesh with the center (" << where
-              << ") is inverted or degenerate: the determinant of its "
-                 "Jacobian, divided by the lengths of its columns, is "
-              << extreme.min
-              << " somewhere in it; it has to be positive (1 in "
-                 "a "
-              << (dim == 2 ? "rectangle" : "box") << ").";
-      AssertThrow(false, ExcMessage(message.str()));
+      refuse("The cell of the mesh with the center (" + as_text(where) +
+             ") is inverted or degenerate: the determinant of its Jacobian, "
+             "divided by the lengths of its columns, is " +
+             as_text(extreme.min) +
+             " somewhere in it; it has to be positive (1 in a " +
+             (dim == 2 ? "rectangle" : "box") + ").");
     }
 
 
@@ -153,14 +149,13 @@ namespace Viscoplastic
                 }
           }
       }
-    std::ostringstream message;
-    message << "The mesh consists of " << n_parts
-            << " parts that share no faces, e.g. the cells with the centers ("
-            << first << ") and (" << other
-            << ") are not connected. Bodies of their own need contact with "
-               "each other ('Against'); the cells of one body have their "
-               "nodes in common (merge nodes that are at the same place).";
-    AssertThrow(n_parts == 1, ExcMessage(message.str()));
+    require(n_parts == 1,
+            "The mesh consists of " + std::to_string(n_parts) +
+              " parts that share no faces, e.g. the cells with the centers (" +
+              as_text(first) + ") and (" + as_text(other) +
+              ") are not connected. Bodies of their own need contact with each "
+              "other ('Against'); the cells of one body have their nodes in "
+              "common (merge nodes that are at the same place).");
   }
 
 

@@ -12,7 +12,6 @@
 #include <cstdlib>
 #include <map>
 #include <memory>
-#include <sstream>
 
 namespace Viscoplastic
 {
@@ -84,30 +83,24 @@ namespace Viscoplastic
           for (const std::string &text :
                Utilities::split_string_list(arguments[place], ','))
             {
-              char        *end   = nullptr;
-              const double value = std::strtod(text.c_str(), &end);
-              if (*end != '\0')
+              const auto value = number_of(text);
+              if (!value)
                 return; // deal.II says it
-              is_negative = is_negative || value < 0.;
+              is_negative = is_negative || *value < 0.;
               // Where zero is possible, deal.II chooses a small number.
               if (counts.kind == CellCounts::sum)
-                total += value;
+                total += *value;
               else
-                total *= std::pow(std::max(1., value),
+                total *= std::pow(std::max(1., *value),
                                   counts.kind == CellCounts::power ? dim : 1);
             }
         }
       constexpr unsigned int most = 10000000;
-      std::ostringstream     message;
-      message << "'Geometry/Arguments' = " << geometry.arguments
-              << " asks for ";
-      if (is_negative)
-        message << numbers;
-      else
-        message << total;
-      message << " cells; possible are 1 to " << most
-              << " (refinements make more).";
-      AssertThrow(!is_negative && total <= most, ExcMessage(message.str()));
+      require(!is_negative && total <= most,
+              "'Geometry/Arguments' = " + geometry.arguments + " asks for " +
+                (is_negative ? numbers : as_text(total)) +
+                " cells; possible are 1 to " + std::to_string(most) +
+                " (refinements make more).");
       check_mesh_size(dim,
                       total,
                       total,
@@ -125,10 +118,10 @@ namespace Viscoplastic
       std::vector<double> values;
       for (const std::string &part : Utilities::split_string_list(text, ','))
         {
-          char *end = nullptr;
-          values.push_back(std::strtod(part.c_str(), &end));
-          if (*end != '\0' || part.empty() || !std::isfinite(values.back()))
+          const auto value = number_of(part);
+          if (!value || !std::isfinite(*value))
             return {};
+          values.push_back(*value);
         }
       return values;
     }
@@ -149,11 +142,9 @@ namespace Viscoplastic
         return; // deal.II says it
       const auto lists = Utilities::split_string_list(arguments[0], ';');
       const auto refuse_unless = [&](const bool good, const std::string &what) {
-        AssertThrow(good,
-                    ExcMessage(
-                      "'Geometry/Arguments' = " + excerpt(geometry.arguments) +
-                      ": '" + excerpt(arguments[0]) + "' has to be " + what +
-                      "."));
+        require(good,
+                "'Geometry/Arguments' = " + excerpt(geometry.arguments) +
+                  ": '" + excerpt(arguments[0]) + "' has to be " + what + ".");
       };
       const std::string n = std::to_string(dim);
       if (lists.size() < 2)
@@ -265,15 +256,13 @@ namespace Viscoplastic
                   "deal.II's GridGenerator documents.";
           else if (why.find("not implemented") != std::string::npos)
             why = "there is no such generator in " + std::to_string(dim) + "D.";
-          AssertThrow(false,
-                      ExcMessage("The mesh generator '" +
-                                 excerpt(geometry.generator) +
-                                 "' refuses the arguments '" +
-                                 excerpt(geometry.arguments) + "': " + why));
+          refuse("The mesh generator '" + excerpt(geometry.generator) +
+                 "' refuses the arguments '" + excerpt(geometry.arguments) +
+                 "': " + why);
         }
-      AssertThrow(triangulation.all_reference_cells_are_hyper_cube(),
-                  ExcMessage("The mesh must consist of quadrilaterals or "
-                             "hexahedra; simplices are not supported."));
+      require(triangulation.all_reference_cells_are_hyper_cube(),
+              "The mesh must consist of quadrilaterals or hexahedra; simplices "
+              "are not supported.");
     }
 
 
@@ -286,12 +275,11 @@ namespace Viscoplastic
                     const std::vector<std::string>            &arguments,
                     parallel::distributed::Triangulation<dim> &triangulation)
     {
-      AssertThrow(generators.size() == arguments.size(),
-                  ExcMessage("'Geometry/Generator' has " +
-                             std::to_string(generators.size()) +
-                             " bodies, but 'Arguments' are those of " +
-                             std::to_string(arguments.size()) +
-                             "; both are lists separated by `|'."));
+      require(generators.size() == arguments.size(),
+              "'Geometry/Generator' has " + std::to_string(generators.size()) +
+                " bodies, but 'Arguments' are those of " +
+                std::to_string(arguments.size()) +
+                "; both are lists separated by `|'.");
       std::vector<Point<dim>>                     vertices;
       std::vector<CellData<dim>>                  cells;
       SubCellData                                 faces;
@@ -311,13 +299,12 @@ namespace Viscoplastic
               {
                 new_id[id] = manifolds.size();
                 manifolds.push_back(body.get_manifold(id).clone());
-                AssertThrow(
+                require(
                   dynamic_cast<const TransfiniteInterpolationManifold<dim> *>(
                     manifolds.back().get()) == nullptr,
-                  ExcMessage("The mesh generator '" + excerpt(generators[b]) +
-                             "' cannot be one of several bodies, "
-                             "since it interpolates between curved "
-                             "edges; use a mesh file."));
+                  "The mesh generator '" + excerpt(generators[b]) +
+                    "' cannot be one of several bodies, since it interpolates "
+                    "between curved edges; use a mesh file.");
               }
           auto [body_vertices, body_cells, body_faces] =
             GridTools::get_coarse_mesh_description(body);

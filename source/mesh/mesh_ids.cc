@@ -6,6 +6,7 @@
 #include <deal.II/fe/fe_values.h>
 
 #include <viscoplastic_contact/base/expression.h>
+#include <viscoplastic_contact/base/messages.h>
 #include <viscoplastic_contact/base/types.h>
 #include <viscoplastic_contact/mesh/mesh_ids.h>
 
@@ -13,7 +14,6 @@
 #include <cmath>
 #include <map>
 #include <memory>
-#include <sstream>
 #include <vector>
 
 namespace Viscoplastic
@@ -52,14 +52,12 @@ namespace Viscoplastic
             const Point<dim> x = object.intermediate_point(
               xi + 0.99 * (GeometryInfo<structdim>::unit_cell_vertex(v) - xi));
             const unsigned int id_here = value(x, old_id);
-            if (id_here == id)
-              continue;
-            std::ostringstream message;
-            message << "'" << entry << "' gives " << id << " and " << id_here
-                    << " in the " << what << " with the center (" << center
-                    << "); an id may change only between " << what
-                    << "s of the coarse mesh.";
-            AssertThrow(false, ExcMessage(message.str()));
+            require(id_here == id,
+                    "'" + entry + "' gives " + std::to_string(id) + " and " +
+                      std::to_string(id_here) + " in the " + what +
+                      " with the center (" + as_text(center) +
+                      "); an id may change only between " + what +
+                      "s of the coarse mesh.");
           }
         return id;
       }
@@ -73,11 +71,9 @@ namespace Viscoplastic
         if (std::abs(result - std::round(result)) <= 1e-6 && result > -0.5 &&
             result < largest_id + 0.5)
           return static_cast<unsigned int>(std::round(result));
-        std::ostringstream message;
-        message << "'" << entry << "' gives " << result << " at (" << x
-                << "); ids are whole numbers from 0 to " << largest_id << ".";
-        AssertThrow(false, ExcMessage(message.str()));
-        return 0;
+        refuse("'" + entry + "' gives " + as_text(result) + " at (" +
+               as_text(x) + "); ids are whole numbers from 0 to " +
+               std::to_string(largest_id) + ".");
       }
 
       const std::string                          entry;
@@ -130,17 +126,30 @@ namespace Viscoplastic
 
 
   template <int dim>
+  std::map<unsigned int, std::set<types::boundary_id>>
+  boundaries_at_vertices(const Triangulation<dim> &triangulation)
+  {
+    std::map<unsigned int, std::set<types::boundary_id>> result;
+    for (const auto &cell : triangulation.cell_iterators_on_level(0))
+      {
+        for (const unsigned int v : cell->vertex_indices())
+          result[cell->vertex_index(v)];
+        for (const unsigned int f : cell->face_indices())
+          if (const auto face = cell->face(f); face->at_boundary())
+            for (const unsigned int v : face->vertex_indices())
+              result[face->vertex_index(v)].insert(face->boundary_id());
+      }
+    return result;
+  }
+
+
+
+  template <int dim>
   std::set<std::pair<types::boundary_id, types::boundary_id>>
   touching_boundaries(const Triangulation<dim> &triangulation)
   {
-    std::map<unsigned int, std::set<types::boundary_id>> at_vertex;
-    for (const auto &cell : triangulation.cell_iterators_on_level(0))
-      for (const unsigned int f : cell->face_indices())
-        if (const auto face = cell->face(f); face->at_boundary())
-          for (const unsigned int v : face->vertex_indices())
-            at_vertex[face->vertex_index(v)].insert(face->boundary_id());
     std::set<std::pair<types::boundary_id, types::boundary_id>> result;
-    for (const auto &[vertex, ids] : at_vertex)
+    for (const auto &[vertex, ids] : boundaries_at_vertices(triangulation))
       for (const types::boundary_id a : ids)
         for (const types::boundary_id b : ids)
           result.emplace(a, b);
@@ -163,6 +172,16 @@ namespace Viscoplastic
 
   namespace
   {
+    /// The angle in degrees between unit vectors of this distance; an arc
+    /// cosine knows none below 1e-8.
+    double
+    angle_of_chord(const double chord)
+    {
+      return 2. * std::asin(std::min(1., chord / 2.)) * 180. / numbers::PI;
+    }
+
+
+
     /// Call visit(normal, JxW) at points of all owned faces with an id.
     template <int dim, typename Visitor>
     void
@@ -196,14 +215,10 @@ namespace Viscoplastic
   piece_normal(const parallel::distributed::Triangulation<dim> &triangulation,
                const types::boundary_id                         id)
   {
-    const MPI_Comm comm            = triangulation.get_communicator();
-    const auto     for_each_normal = [&](const auto &visit) {
-      visit_normals(triangulation, id, visit);
-    };
-
+    const MPI_Comm comm = triangulation.get_communicator();
     Tensor<1, dim> sum;
     double         area = 0.;
-    for_each_normal([&](const Tensor<1, dim> &normal, const double JxW) {
+    visit_normals(triangulation, id, [&](const auto &normal, const double JxW) {
       sum += normal * JxW;
       area += JxW;
     });
@@ -222,14 +237,12 @@ namespace Viscoplastic
           result.normal     = 0.;
           result.normal[d]  = sign;
         }
-    // By the chord, since an arc cosine knows no angles below 1e-8.
     double chord = 0.;
-    for_each_normal([&](const Tensor<1, dim> &normal, const double) {
+    visit_normals(triangulation, id, [&](const auto &normal, const double) {
       chord = std::max(chord, (normal - result.normal).norm());
     });
-    chord = Utilities::MPI::max(chord, comm);
-    result.deviation =
-      2. * std::asin(std::min(1., chord / 2.)) * 180. / numbers::PI;
+    chord            = Utilities::MPI::max(chord, comm);
+    result.deviation = angle_of_chord(chord);
     return result;
   }
 
@@ -268,7 +281,7 @@ namespace Viscoplastic
                 }
             }
     chord = Utilities::MPI::max(chord, triangulation.get_communicator());
-    return 2. * std::asin(std::min(1., chord / 2.)) * 180. / numbers::PI;
+    return angle_of_chord(chord);
   }
 
 
@@ -285,14 +298,14 @@ namespace Viscoplastic
                   [&](const Tensor<1, dim> &normal, const double) {
                     here |= normal * direction > 1e-6;
                   });
-    return Utilities::MPI::max(here ? 1 : 0,
-                               triangulation.get_communicator()) == 1;
+    return Utilities::MPI::logical_or(here, triangulation.get_communicator());
   }
 
 
 
   VISCOPLASTIC_INSTANTIATE(set_ids);
   VISCOPLASTIC_INSTANTIATE(boundary_ids);
+  VISCOPLASTIC_INSTANTIATE(boundaries_at_vertices);
   VISCOPLASTIC_INSTANTIATE(touching_boundaries);
   VISCOPLASTIC_INSTANTIATE(material_ids);
   VISCOPLASTIC_INSTANTIATE(piece_normal);

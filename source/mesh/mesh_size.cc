@@ -3,6 +3,7 @@
 #include <deal.II/base/mpi.h>
 #include <deal.II/grid/grid_tools.h>
 
+#include <viscoplastic_contact/base/messages.h>
 #include <viscoplastic_contact/base/types.h>
 #include <viscoplastic_contact/mesh/mesh_size.h>
 
@@ -77,20 +78,18 @@ namespace Viscoplastic
     std::ostringstream message;
     message << cause << " would make about " << n_cells << " cells and "
             << n_unknowns << " unknowns, ";
-    AssertThrow(n_unknowns <= most,
-                ExcMessage(message.str() + "more than can be numbered (" +
-                           std::to_string(std::numeric_limits<int>::max()) +
-                           ")."));
-    AssertThrow(n_entries / n_ranks <= most,
-                ExcMessage(
-                  message.str() + "which is too much for " +
-                  (n_ranks == 1 ? "one MPI rank" :
-                                  std::to_string(n_ranks) + " MPI ranks") +
-                  ", whose matrix would have more entries than can be "
-                  "numbered; take at least " +
-                  std::to_string(
-                    static_cast<unsigned int>(std::ceil(n_entries / most))) +
-                  "."));
+    require(n_unknowns <= most,
+            message.str() + "more than can be numbered (" +
+              std::to_string(std::numeric_limits<int>::max()) + ").");
+    require(n_entries / n_ranks <= most,
+            message.str() + "which is too much for " +
+              (n_ranks == 1 ? "one MPI rank" :
+                              std::to_string(n_ranks) + " MPI ranks") +
+              ", whose matrix would have more entries than can be numbered; "
+              "take at least " +
+              std::to_string(
+                static_cast<unsigned int>(std::ceil(n_entries / most))) +
+              ".");
 
     // Measured: mesh and spaces take 760 (2D) and 1280 bytes (3D) a cell. The
     // solver takes several times as much: this refuses only what must fail.
@@ -111,9 +110,8 @@ namespace Viscoplastic
     else
       message << " GB; --check says what a mesh needs.";
     // Computers may differ, and all ranks have to throw.
-    const bool is_possible =
-      Utilities::MPI::min(n_bytes <= n_possible ? 1 : 0, communicator) == 1;
-    AssertThrow(is_possible, ExcMessage(message.str()));
+    require(!Utilities::MPI::logical_or(n_bytes > n_possible, communicator),
+            message.str());
   }
 
 

@@ -3,6 +3,7 @@
 #include <deal.II/fe/mapping_q1.h>
 #include <deal.II/numerics/rtree.h>
 
+#include <viscoplastic_contact/base/messages.h>
 #include <viscoplastic_contact/base/types.h>
 #include <viscoplastic_contact/mesh/cell_order.h>
 #include <viscoplastic_contact/mesh/point_location.h>
@@ -10,7 +11,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <sstream>
 
 namespace Viscoplastic
 {
@@ -362,12 +362,10 @@ namespace Viscoplastic
                 cells[found.points[i].cell], found.points[i].unit);
             }
           place = Utilities::MPI::sum(place, mesh.get_communicator());
-          std::ostringstream message;
-          message << "'" << entry << "': the point (" << points[i]
-                  << ") does not lie in the body; the nearest place that does "
-                     "is ("
-                  << place << ").";
-          AssertThrow(false, ExcMessage(message.str()));
+          refuse("'" + entry + "': the point (" + as_text(points[i]) +
+                 ") does not lie in the body; the nearest place that does is "
+                 "(" +
+                 as_text(place) + ").");
         }
   }
 

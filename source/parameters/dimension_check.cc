@@ -6,6 +6,7 @@
 #include <viscoplastic_contact/parameters/dimension_check.h>
 
 #include <cctype>
+#include <charconv>
 #include <cmath>
 #include <cstdlib>
 #include <map>
@@ -407,30 +408,12 @@ namespace Viscoplastic
   std::size_t
   end_of_number(const std::string &text, const std::size_t begin)
   {
-    const auto digits_from = [&text](std::size_t i) {
-      while (i < text.size() &&
-             std::isdigit(static_cast<unsigned char>(text[i])) != 0)
-        ++i;
-      return i;
-    };
-    std::size_t       end     = digits_from(begin);
-    const std::size_t n_whole = end - begin;
-    std::size_t       n_after = 0;
-    if (end < text.size() && text[end] == '.')
-      {
-        n_after = digits_from(end + 1) - (end + 1);
-        end += 1 + n_after;
-      }
-    if (n_whole + n_after == 0)
+    const char *const from = text.data() + begin;
+    if (begin >= text.size() ||
+        (*from != '.' && std::isdigit(static_cast<unsigned char>(*from)) == 0))
       return begin;
-    if (end < text.size() && (text[end] == 'e' || text[end] == 'E'))
-      {
-        std::size_t first = end + 1;
-        if (first < text.size() && (text[first] == '-' || text[first] == '+'))
-          ++first;
-        if (const std::size_t last = digits_from(first); last > first)
-          end = last;
-      }
-    return end;
+    double number;
+    return std::from_chars(from, text.data() + text.size(), number).ptr -
+           text.data();
   }
 } // namespace Viscoplastic

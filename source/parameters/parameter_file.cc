@@ -22,14 +22,6 @@ namespace Viscoplastic
 
 
 
-    std::string
-    comma_separated(const std::vector<std::string> &names)
-    {
-      std::string result;
-      for (const std::string &name : names)
-        result += (result.empty() ? "" : ", ") + name;
-      return result;
-    }
   } // namespace
 
 
@@ -37,11 +29,8 @@ namespace Viscoplastic
   void
   Parameters::load_shared_libraries(const std::vector<ParameterLine> &lines)
   {
-    const auto line =
-      std::find_if(lines.rbegin(), lines.rend(), [](const auto &one) {
-        return one.section.empty() && one.name == shared_libraries_entry;
-      });
-    if (line == lines.rend() || line->value.empty())
+    const ParameterLine *const line = last_line(lines, shared_libraries_entry);
+    if (line == nullptr || line->value.empty())
       {
         laws = built_in_laws();
         return;
@@ -49,9 +38,9 @@ namespace Viscoplastic
     for (const std::string &library :
          Utilities::split_string_list(line->value, ','))
       {
-        AssertThrow(!library.empty(),
-                    ExcMessage(line->origin() + ": '" + shared_libraries_entry +
-                               "' has an empty name between commas."));
+        require(!library.empty(),
+                line->origin() + ": '" + shared_libraries_entry +
+                  "' has an empty name between commas.");
         shared_libraries.push_back(line->locate(library));
       }
     try
@@ -60,9 +49,7 @@ namespace Viscoplastic
       }
     catch (...)
       {
-        AssertThrow(false,
-                    ExcMessage(line->origin() + ": " +
-                               reason_of_current_exception()));
+        refuse(line->origin() + ": " + reason_of_current_exception());
       }
   }
 
@@ -131,8 +118,8 @@ namespace Viscoplastic
       return lines
         [std::count(text.begin(), text.begin() + input.tellg(), '\n') - 1];
     };
-    const auto refuse = [&](const std::string &why) {
-      AssertThrow(false, ExcMessage(line().origin() + ": " + why));
+    const auto refuse_line = [&](const std::string &why) {
+      refuse(line().origin() + ": " + why);
     };
     try
       {
@@ -140,17 +127,17 @@ namespace Viscoplastic
       }
     catch (const ParameterHandler::ExcNoSubsection &)
       {
-        refuse(unknown_name(line(), declared_entries(handler)));
+        refuse_line(unknown_name(line(), declared_entries(handler)));
       }
     catch (const ParameterHandler::ExcInvalidEntryForPattern &)
       {
-        refuse(wrong_value(line(), declared_entries(handler)));
+        refuse_line(wrong_value(line(), declared_entries(handler)));
       }
     catch (const ParameterHandler::ExcCannotParseLine &)
       {
-        refuse(line().name.empty() ?
-                 no_statement(line().text) :
-                 unknown_name(line(), declared_entries(handler)));
+        refuse_line(line().name.empty() ?
+                      no_statement(line().text) :
+                      unknown_name(line(), declared_entries(handler)));
       }
   }
 
@@ -169,14 +156,13 @@ namespace Viscoplastic
           const std::string path = line.section + line.name;
           const Tree &entry = declared.get_child(Tree::path_type(path, '/'));
           // The record of a run has the entries with their defaults.
-          AssertThrow(line.value == entry.get<std::string>("default_value"),
-                      ExcMessage(
-                        line.origin() + ": '" + path +
-                        "' cannot be set beside 'Material " +
-                        std::to_string(materials.begin()->first) +
-                        "'; where materials have numbers, each is described "
-                        "in its own subsection, and 'Material' has only "
-                        "'Volumetric integration' and 'Stress history'."));
+          require(line.value == entry.get<std::string>("default_value"),
+                  line.origin() + ": '" + path +
+                    "' cannot be set beside 'Material " +
+                    std::to_string(materials.begin()->first) +
+                    "'; where materials have numbers, each is described in its "
+                    "own subsection, and 'Material' has only 'Volumetric "
+                    "integration' and 'Stress history'.");
         }
   }
 
@@ -185,11 +171,8 @@ namespace Viscoplastic
   void
   Parameters::locate_mesh_file(const std::vector<ParameterLine> &lines)
   {
-    const auto line =
-      std::find_if(lines.rbegin(), lines.rend(), [](const auto &one) {
-        return one.section + one.name == "Geometry/File";
-      });
-    const std::string found = line->locate(geometry.file);
+    const std::string found =
+      last_line(lines, "Geometry/File")->locate(geometry.file);
     handler.enter_subsection("Geometry");
     handler.set("File", found);
     handler.leave_subsection();
@@ -214,29 +197,28 @@ namespace Viscoplastic
     if (refinement.strategy == RefinementStrategy::automatic)
       refinement.strategy =
         has_tolerance ? RefinementStrategy::residual : RefinementStrategy::none;
-    AssertThrow(error_control.quantity.empty() || error_control.error_estimator,
-                ExcMessage("'Error control/Quantity' needs the estimate of the "
-                           "error; set 'Error control/Error bar' = true."));
-    AssertThrow(error_control.quantity.empty() ||
-                  refinement.strategy != RefinementStrategy::kelly,
-                ExcMessage("'Error control/Quantity' refines by residuals; set "
-                           "'Mesh refinement/Strategy' = residual, or none for "
-                           "a fixed mesh."));
+    require(error_control.quantity.empty() || error_control.error_estimator,
+            "'Error control/Quantity' needs the estimate of the error; set "
+            "'Error control/Error bar' = true.");
+    require(error_control.quantity.empty() ||
+              refinement.strategy != RefinementStrategy::kelly,
+            "'Error control/Quantity' refines by residuals; set 'Mesh "
+            "refinement/Strategy' = residual, or none for a fixed mesh.");
     if (!has_tolerance)
       return;
-    AssertThrow(error_control.tolerance < 1.,
-                ExcMessage("'Error control/Tolerance' = 1 lets the error be as "
-                           "large as the solution; 1 % is 0.01."));
-    AssertThrow(error_control.error_estimator,
-                ExcMessage("'Error control/Tolerance' needs an estimate of the "
-                           "error; set 'Error control/Error bar' = true."));
-    AssertThrow(!step_control.is_on(),
-                ExcMessage("'Error control/Tolerance' chooses the steps, too; "
-                           "set 'Step control/Tolerance' = 0."));
-    AssertThrow(refinement.strategy != RefinementStrategy::kelly,
-                ExcMessage("'Error control/Tolerance' refines by the estimate "
-                           "of the error; set 'Mesh refinement/Strategy' = "
-                           "residual, or none for a fixed mesh."));
+    require(error_control.tolerance < 1.,
+            "'Error control/Tolerance' = 1 lets the error be as large as the "
+            "solution; 1 % is 0.01.");
+    require(error_control.error_estimator,
+            "'Error control/Tolerance' needs an estimate of the error; set "
+            "'Error control/Error bar' = true.");
+    require(!step_control.is_on(),
+            "'Error control/Tolerance' chooses the steps, too; set 'Step "
+            "control/Tolerance' = 0.");
+    require(
+      refinement.strategy != RefinementStrategy::kelly,
+      "'Error control/Tolerance' refines by the estimate of the error; set "
+      "'Mesh refinement/Strategy' = residual, or none for a fixed mesh.");
   }
 
 
@@ -273,19 +255,18 @@ namespace Viscoplastic
     use_tables(read_tables(handler, tables, lines));
     units.are_of_whole_bodies =
       geometry.plane_model == PlaneModel::axisymmetric;
-    handler.set(shared_libraries_entry, comma_separated(shared_libraries));
+    handler.set(shared_libraries_entry,
+                enumeration(shared_libraries, shared_libraries.size()));
     if (!materials.empty())
       check_material(lines);
     if (!geometry.file.empty())
       locate_mesh_file(lines);
     resolve_automatic_choices();
     refinement.check();
-    std::ostringstream message;
-    message << "'Solver/Contact tolerance' = " << solver.contact_tolerance
-            << " is below rounding; it must be 0 or lie between 1e-14 and 0.1.";
-    AssertThrow(solver.contact_tolerance == 0. ||
-                  solver.contact_tolerance >= 1e-14,
-                ExcMessage(message.str()));
+    require(solver.contact_tolerance == 0. || solver.contact_tolerance >= 1e-14,
+            "'Solver/Contact tolerance' = " +
+              as_text(solver.contact_tolerance) +
+              " is below rounding; it must be 0 or lie between 1e-14 and 0.1.");
   }
 
 

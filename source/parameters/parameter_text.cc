@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <deal.II/base/exceptions.h>
 #include <deal.II/base/patterns.h>
 #include <deal.II/base/utilities.h>
 
@@ -26,14 +25,6 @@ namespace Viscoplastic
     const std::size_t  max_characters = 10'000'000;
     const unsigned int max_files      = 1000;
     const int          max_depth      = 50;
-
-
-
-    void
-    require(const bool condition, const std::string &sentence)
-    {
-      AssertThrow(condition, ExcMessage(sentence));
-    }
 
 
 
@@ -193,10 +184,9 @@ namespace Viscoplastic
             first = next;
             logical.clear();
           }
-        AssertThrow(source.open.empty(),
-                    ExcMessage(
-                      source.open.back().origin() + ": the subsection '" +
-                      excerpt(source.open.back().name) + "' has no `end'."));
+        if (!source.open.empty())
+          refuse(source.open.back().origin() + ": the subsection '" +
+                 excerpt(source.open.back().name) + "' has no `end'.");
       }
 
       void
@@ -276,6 +266,18 @@ namespace Viscoplastic
                                  ", neither beside '" + source +
                                    "' nor in the working directory."));
     return fs::absolute(found).lexically_normal().string();
+  }
+
+
+
+  const ParameterLine *
+  last_line(const std::vector<ParameterLine> &lines, const std::string &path)
+  {
+    const auto line =
+      std::find_if(lines.rbegin(), lines.rend(), [&path](const auto &one) {
+        return !one.is_opening && one.section + one.name == path;
+      });
+    return line == lines.rend() ? nullptr : &*line;
   }
 
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <deal.II/base/patterns.h>
 
+#include <viscoplastic_contact/base/messages.h>
 #include <viscoplastic_contact/parameters/parameters.h>
 
 // The entries on how a scene is computed and what is written; those that
@@ -263,14 +264,14 @@ namespace Viscoplastic
   void
   RefinementParameters::check() const
   {
-    AssertThrow(minimal_level <= maximal_level,
-                ExcMessage("'Mesh refinement/Minimal level' = " +
-                           std::to_string(minimal_level) +
-                           " must not exceed 'Maximal level' = " +
-                           std::to_string(maximal_level) + "."));
-    AssertThrow(refinement_fraction + coarsening_fraction <= 1.,
-                ExcMessage("'Mesh refinement/Refinement fraction' and "
-                           "'Coarsening fraction' must add up to at most 1."));
+    require(minimal_level <= maximal_level,
+            "'Mesh refinement/Minimal level' = " +
+              std::to_string(minimal_level) +
+              " must not exceed 'Maximal level' = " +
+              std::to_string(maximal_level) + ".");
+    require(refinement_fraction + coarsening_fraction <= 1.,
+            "'Mesh refinement/Refinement fraction' and 'Coarsening fraction' "
+            "must add up to at most 1.");
   }
 
 
@@ -299,11 +300,11 @@ namespace Viscoplastic
       "and one a mesh for all ranks together, for "
       "solution.xdmf; else as VTU, a file a rank with the mesh, "
       "as fields of faces are in any case.");
-    prm.add_parameter(
-      "Reference fields",
-      reference_fields,
-      "At the end of each phase of time, write the fields in "
-      "all cells for coarser runs to be compared with, see `Exact solution/Reference directory'.");
+    prm.add_parameter("Reference fields",
+                      reference_fields,
+                      "At the end of each phase of time, write the fields in "
+                      "all cells for coarser runs to be compared with, see "
+                      "`Exact solution/Reference directory'.");
     prm.add_parameter("Revolved angle",
                       revolved_angle,
                       "Degrees by which the section of a body of revolution is "
@@ -325,7 +326,8 @@ namespace Viscoplastic
       "separated by commas. The fields are those of the outputs (see "
       "`Additional fields', which need not have them), `history' of laws with "
       "history variables; a stress or strain is that of the cell of the point. "
-      "From `slip' on they are fields of Gamma_3, which the points on it have.");
+      "From `slip' on they are fields of Gamma_3, which the points on it "
+      "have.");
     prm.add_parameter("Lines",
                       lines,
                       "Straight lines through the body as `begin : end : "
@@ -350,7 +352,8 @@ namespace Viscoplastic
       "commas, such as `boundary 3: displacement, stress vector; material 2: "
       "stress, creep strain'. The undeformed area or volume is always there. "
       "Fields are those of `Point fields'; materials and the body also have "
-      "`energies', the stored and the dissipated one; boundaries have `normal traction' "
+      "`energies', the stored and the dissipated one; boundaries have `normal "
+      "traction' "
       "and `stress vector' sigma nu, of the means of the cells behind them, "
       "whatever their role.");
     add_choices(
@@ -359,11 +362,15 @@ namespace Viscoplastic
       additional_fields,
       "What the outputs of fields have besides displacements and stresses, "
       "separated by commas. In the body, of cell means: the tensors `total "
-      "strain' eps(u) and `irreversible strain' eps(u) - E^-1 sigma, less the thermal strain; the scalars "
-      "`creep strain', the equivalent (2/3 e:e)^(1/2) of the deviator of what "
-      "flow has added to the irreversible strain, and `creep rate', the same of "
-      "-E^-1 G; `principal stresses', the largest first. On Gamma_3: `normal traction' sigma_nu, negative in compression; "
-      "`friction work', what friction has dissipated per area since t = 0.");
+      "strain' eps(u) and `irreversible strain' eps(u) - E^-1 sigma, less the "
+      "thermal strain; the scalars `creep strain', the equivalent (2/3 "
+      "e:e)^(1/2) of the deviator of what flow has added to the irreversible "
+      "strain, and `creep rate', the same of -E^-1 G; `principal stresses', "
+      "the largest first. On Gamma_3: `normal traction' sigma_nu, negative in "
+      "compression; `friction work', what friction has dissipated per area "
+      "since t = 0.",
+      "total strain|irreversible strain|creep strain|creep rate|principal "
+      "stresses|normal traction|friction work");
   }
 
 

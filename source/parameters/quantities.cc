@@ -53,14 +53,6 @@ namespace Viscoplastic
 
 
 
-    void
-    refuse_unless(const bool condition, const std::string &why)
-    {
-      AssertThrow(condition, ExcMessage(why));
-    }
-
-
-
     /// The number with as few digits as tell it up to rounding.
     std::string
     shortest(const double number)
@@ -140,11 +132,8 @@ namespace Viscoplastic
                const std::string                &path,
                const std::string                &default_value)
     {
-      std::string value = default_value;
-      for (const ParameterLine &line : lines)
-        if (!line.is_opening && line.section + line.name == path)
-          value = line.value;
-      return value;
+      const ParameterLine *const line = last_line(lines, path);
+      return line == nullptr ? default_value : line->value;
     }
 
 
@@ -202,10 +191,10 @@ namespace Viscoplastic
                 const Units       &units)
   {
     for (const std::string name : {"\u00B0C", "degC"})
-      refuse_unless(text.find(name) == std::string::npos,
-                    "'" + name +
-                      "' is no unit here: temperatures are absolute, 20 "
-                      "\u00B0C is `293.15 K', and differences are in K");
+      require(text.find(name) == std::string::npos,
+              "'" + name +
+                "' is no unit here: temperatures are absolute, 20 "
+                "\u00B0C is `293.15 K', and differences are in K");
     std::string result;
     std::size_t copied = 0;
     for (const NumberWithUnit &number : numbers_with_units(text))
@@ -213,34 +202,27 @@ namespace Viscoplastic
         const auto &[unit, end, unknown_name] = number.found;
         const std::string digits =
           text.substr(number.begin, number.end_of_number - number.begin);
-        refuse_unless(!number.lacks_blank,
-                      "a blank must stand between '" + excerpt(digits) +
-                        "' and its unit");
+        require(!number.lacks_blank,
+                "a blank must stand between '" + excerpt(digits) +
+                  "' and its unit");
         if (!unknown_name.empty())
-          {
-            const std::string near =
-              nearest_name(unknown_name,
-                           names_of_units(entry.is_wall_time ? entry.dimension :
-                                                               std::nullopt));
-            refuse_unless(false,
-                          "there is no unit '" + excerpt(unknown_name) + "'" +
-                            (near.empty() ?
-                               "; units are " +
-                                 enumeration(names_of_units(), 40) :
-                               "; did you mean '" + near + "'?"));
-          }
-        refuse_unless(
-          entry.is_wall_time || units.are_declared(),
-          "'" + excerpt(text.substr(number.begin, end - number.begin)) +
-            "' has a unit, but the scene says none: declare `Length', "
-            "`Time' and `Stress' in `subsection Units'");
+          refuse(
+            "there is no unit '" + excerpt(unknown_name) + "'" +
+            did_you_mean(unknown_name,
+                         names_of_units(entry.is_wall_time ? entry.dimension :
+                                                             std::nullopt),
+                         "; units are " + enumeration(names_of_units(), 40)));
+        require(entry.is_wall_time || units.are_declared(),
+                "'" + excerpt(text.substr(number.begin, end - number.begin)) +
+                  "' has a unit, but the scene says none: declare `Length', "
+                  "`Time' and `Stress' in `subsection Units'");
         const double factor =
           unit.si / (entry.is_wall_time ? 1. : units.si(unit.dimension));
         // Not by std::stod(), which throws also where a number is tiny.
         const double value = factor * std::strtod(digits.c_str(), nullptr);
-        refuse_unless(std::isfinite(value),
-                      "'" + excerpt(digits) +
-                        "' leaves the range of floating-point numbers");
+        require(std::isfinite(value),
+                "'" + excerpt(digits) +
+                  "' leaves the range of floating-point numbers");
         result += text.substr(copied, number.begin - copied) +
                   (std::abs(factor - 1.) < 1e-14 ? digits : shortest(value));
         copied = end;
@@ -251,7 +233,7 @@ namespace Viscoplastic
     if (!wrong.empty() && entry.exponent)
       wrong += " with '" + entry.entry_of_exponent +
                "' = " + shortest(*entry.exponent);
-    refuse_unless(wrong.empty(), wrong);
+    require(wrong.empty(), wrong);
     return result + text.substr(copied);
   }
 
@@ -273,18 +255,14 @@ namespace Viscoplastic
                const Units                &units,
                const ParameterHandler     &handler)
   {
-    std::map<std::string, std::string>           as_written;
-    std::map<std::string, const ParameterLine *> last;
-    for (const ParameterLine &line : lines)
-      last[line.section + line.name] = &line;
-    std::optional<Tree> declared; // takes its time
+    std::map<std::string, std::string> as_written;
+    std::optional<Tree>                declared; // takes its time
     for (ParameterLine &line : lines)
       {
         if (line.is_opening || line.name.empty())
           continue;
         const std::string path = line.section + line.name;
         as_written.erase(path);
-        std::string why;
         try
           {
             const auto numbers = numbers_with_units(line.value);
@@ -301,16 +279,16 @@ namespace Viscoplastic
             if (!unit)
               continue;
             // What another line overrides belongs to another exponent.
-            if (unit->exponent && last.at(path) != &line)
+            if (unit->exponent && last_line(lines, path) != &line)
               unit = EntryUnit();
             if (path == "Time/Phases")
               for (const auto &number : numbers)
                 {
                   const std::size_t separator =
                     line.value.find_last_of(":,", number.begin);
-                  refuse_unless(separator == std::string::npos ||
-                                  line.value[separator] == ',',
-                                "the number of steps has no unit");
+                  require(separator == std::string::npos ||
+                            line.value[separator] == ',',
+                          "the number of steps has no unit");
                 }
             const std::string value = without_units(line.value, *unit, units);
             as_written[path]        = line.value;
@@ -319,12 +297,11 @@ namespace Viscoplastic
           }
         catch (const std::exception &exception)
           {
-            why = reason(exception);
+            const std::string why = reason(exception);
+            refuse(line.origin() + ": '" + excerpt(path) + "' is '" +
+                   excerpt(line.value) + "'; " + why +
+                   (why.back() == '?' || why.back() == '.' ? "" : "."));
           }
-        refuse_unless(why.empty(),
-                      line.origin() + ": '" + excerpt(path) + "' is '" +
-                        excerpt(line.value) + "'; " + why +
-                        (why.back() == '?' || why.back() == '.' ? "" : "."));
       }
     return as_written;
   }

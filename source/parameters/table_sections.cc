@@ -65,11 +65,8 @@ namespace Viscoplastic
         const std::string given = prm.get("File");
         if (given.empty())
           continue;
-        const auto line =
-          std::find_if(lines.rbegin(), lines.rend(), [&](const auto &one) {
-            return one.section + one.name == section + "/File";
-          });
-        const std::string file = line->locate(given);
+        const ParameterLine *const line = last_line(lines, section + "/File");
+        const std::string          file = line->locate(given);
         prm.set("File", file);
         try
           {
@@ -77,8 +74,7 @@ namespace Viscoplastic
             const auto      text = std::filesystem::is_directory(file, none) ?
                                      std::nullopt :
                                      read_file_if_any(file);
-            AssertThrow(text,
-                        ExcMessage("the table '" + file + "' cannot be read."));
+            require(text, "the table '" + file + "' cannot be read.");
             tables.push_back(std::make_shared<const DataTable>(
               *text,
               given,
@@ -91,8 +87,7 @@ namespace Viscoplastic
           }
         catch (const std::exception &exception)
           {
-            AssertThrow(false,
-                        ExcMessage(line->origin() + ": " + reason(exception)));
+            refuse(line->origin() + ": " + reason(exception));
           }
       }
     return tables;

@@ -8,8 +8,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iomanip>
-#include <sstream>
 
 namespace Viscoplastic
 {
@@ -30,71 +28,75 @@ namespace Viscoplastic
                phase.end :
                phase.start + (phase.end - phase.start) * j / phase.n_steps;
     }
+
+
+
+    std::vector<TimeSchedule::Phase>
+    read_phases(const std::string &text)
+    {
+      std::vector<TimeSchedule::Phase> phases;
+      double                           start = 0., n_all_steps = 0.;
+      for (const std::string &phase : Utilities::split_string_list(text, ','))
+        {
+          const auto parts   = Utilities::split_string_list(phase, ':');
+          double     end     = 0.;
+          int        n_steps = 0;
+          try
+            {
+              if (parts.size() == 2)
+                {
+                  end = Utilities::string_to_double(parts[0]);
+                  // Not as an integer, which large numbers would wrap.
+                  const double n = Utilities::string_to_double(parts[1]);
+                  if (n == std::floor(n))
+                    n_steps =
+                      static_cast<int>(std::clamp(n, 0., 2. * max_n_steps));
+                }
+            }
+          catch (const std::exception &)
+            {
+              n_steps = 0; // refused below
+            }
+          require(n_steps > 0,
+                  "'Time/Phases': '" + excerpt(phase) +
+                    "' is not of the form `end time: number of steps' with a "
+                    "positive number of steps.");
+          const std::string of_phase = " of '" + excerpt(phase) + "'";
+          require(std::isfinite(end) && end > start,
+                  "'Time/Phases': the end time" + of_phase +
+                    " must be finite and lie after " + number(start, 15) + ".");
+          const double step = (end - start) / n_steps;
+          require(step > 1e-14 * end,
+                  "'Time/Phases': the steps" + of_phase +
+                    " are shorter than 1e-14 of its end time, which is what "
+                    "rounding leaves of times; take fewer steps.");
+          require_in_range("'Time/Phases': the end time" + of_phase,
+                           end,
+                           least_time,
+                           largest_time);
+          require_in_range("'Time/Phases': the time step" + of_phase,
+                           step,
+                           least_time,
+                           largest_time);
+          n_all_steps += n_steps;
+          require(n_all_steps <= max_n_steps,
+                  "'Time/Phases' has more than 1e9 steps up to '" +
+                    excerpt(phase) + "'; take fewer.");
+          phases.push_back({start, end, static_cast<unsigned int>(n_steps)});
+          start = end;
+        }
+      require(!phases.empty(),
+              "'Time/Phases' is empty; give at least one phase as `end time: "
+              "number of steps'.");
+      return phases;
+    }
   } // namespace
 
 
 
   TimeSchedule::TimeSchedule(const std::string &text)
-  {
-    double start = 0., n_all_steps = 0.;
-    for (const std::string &phase : Utilities::split_string_list(text, ','))
-      {
-        const auto parts   = Utilities::split_string_list(phase, ':');
-        double     end     = 0.;
-        int        n_steps = 0;
-        try
-          {
-            if (parts.size() == 2)
-              {
-                end = Utilities::string_to_double(parts[0]);
-                // Not as an integer, which large numbers would wrap.
-                const double number = Utilities::string_to_double(parts[1]);
-                if (number == std::floor(number))
-                  n_steps =
-                    static_cast<int>(std::clamp(number, 0., 2. * max_n_steps));
-              }
-          }
-        catch (const std::exception &)
-          {
-            n_steps = 0; // refused below
-          }
-        AssertThrow(n_steps > 0,
-                    ExcMessage("'Time/Phases': '" + excerpt(phase) +
-                               "' is not of the form `end time: number of "
-                               "steps' with a positive number of steps."));
-        std::ostringstream message;
-        message << "'Time/Phases': the end time of '" << excerpt(phase)
-                << "' must be finite and lie after " << std::setprecision(15)
-                << start << ".";
-        AssertThrow(std::isfinite(end) && end > start,
-                    ExcMessage(message.str()));
-        const double step = (end - start) / n_steps;
-        AssertThrow(step > 1e-14 * end,
-                    ExcMessage("'Time/Phases': the steps of '" +
-                               excerpt(phase) +
-                               "' are shorter than 1e-14 of "
-                               "its end time, which is what rounding leaves "
-                               "of times; take fewer steps."));
-        AssertThrow(step >= least_time && end <= largest_time,
-                    ExcMessage(out_of_range("'Time/Phases': the " +
-                                              std::string(step < least_time ?
-                                                            "time step" :
-                                                            "end time") +
-                                              " of '" + excerpt(phase) + "'",
-                                            step < least_time ? step : end,
-                                            least_time,
-                                            largest_time)));
-        n_all_steps += n_steps;
-        AssertThrow(n_all_steps <= max_n_steps,
-                    ExcMessage("'Time/Phases' has more than 1e9 steps up to '" +
-                               excerpt(phase) + "'; take fewer."));
-        phases.push_back({start, end, static_cast<unsigned int>(n_steps)});
-        start = end;
-      }
-    AssertThrow(!phases.empty(),
-                ExcMessage("'Time/Phases' is empty; give at least one phase as "
-                           "`end time: number of steps'."));
-  }
+    : phases(read_phases(text))
+  {}
 
 
 
@@ -154,33 +156,5 @@ namespace Viscoplastic
         n += phase.n_steps;
       }
     return largest;
-  }
-
-
-
-  std::vector<StepsUntil>
-  read_phases(const std::string &text)
-  {
-    std::vector<StepsUntil> phases;
-    for (const std::string &phase : Utilities::split_string_list(text, ','))
-      {
-        const auto parts = Utilities::split_string_list(phase, ':');
-        phases.push_back({parts.at(0),
-                          static_cast<unsigned int>(Utilities::string_to_double(
-                            parts.at(1)))}); // may be 1e3
-      }
-    return phases;
-  }
-
-
-
-  std::string
-  write_phases(const std::vector<StepsUntil> &phases)
-  {
-    std::string text;
-    for (const StepsUntil &phase : phases)
-      text += (text.empty() ? "" : ", ") + phase.end + ": " +
-              std::to_string(phase.n_steps);
-    return text;
   }
 } // namespace Viscoplastic

@@ -146,12 +146,13 @@ namespace Viscoplastic
 
     const Names candidates =
       parent.empty() ? outermost : names_in(line.section, entries, opens);
-    const std::string nearest = nearest_name(line.name, candidates);
     const std::string several = opens ? "subsections" : "entries";
-    return said + (!nearest.empty()   ? "; did you mean '" + nearest + "'?" :
-                   candidates.empty() ? "; it has no " + several + "." :
-                                        "; its " + several + " are: " +
-                                          enumeration(candidates, 30) + ".");
+    return said + did_you_mean(line.name,
+                               candidates,
+                               candidates.empty() ?
+                                 "; it has no " + several + "." :
+                                 "; its " + several + " are: " +
+                                   enumeration(candidates, 30) + ".");
   }
 
 
@@ -240,14 +241,13 @@ namespace Viscoplastic
     const std::string path    = line.section + line.name;
     const auto        pattern = declared.get<std::string>(
       Tree::path_type(path + "/pattern_description", '/'));
-    const std::string near =
+    const Names choices =
       pattern.compare(0, 11, "[Selection ") == 0 ?
-        nearest_name(line.value,
-                     Utilities::split_string_list(
-                       pattern.substr(11, pattern.rfind(' ') - 11), '|')) :
-        "";
+        Utilities::split_string_list(pattern.substr(11,
+                                                    pattern.rfind(' ') - 11),
+                                     '|') :
+        Names();
     return "'" + path + "' is '" + excerpt(line.value) + "'; it must be " +
-           allowed_values(pattern) +
-           (near.empty() ? "." : "; did you mean '" + near + "'?");
+           allowed_values(pattern) + did_you_mean(line.value, choices);
   }
 } // namespace Viscoplastic

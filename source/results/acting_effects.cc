@@ -2,9 +2,6 @@
 #include <viscoplastic_contact/base/messages.h>
 #include <viscoplastic_contact/results/acting_effects.h>
 
-#include <iomanip>
-#include <sstream>
-
 namespace Viscoplastic
 {
   namespace
@@ -59,8 +56,8 @@ namespace Viscoplastic
     if (!discretization.face)
       return;
     const auto is_so = [&discretization](const bool here) {
-      return Utilities::MPI::max(here ? 1 : 0,
-                                 discretization.space.communicator) == 1;
+      return Utilities::MPI::logical_or(here,
+                                        discretization.space.communicator);
     };
     if (!has_bound)
       {
@@ -139,22 +136,22 @@ namespace Viscoplastic
                           "pressure is given) gives the same for less."));
     else if (scene.has_friction() && run.slip_area.value == 0.)
       {
-        std::ostringstream text;
-        text << std::setprecision(3)
-             << "friction has never acted: nothing has slipped, and at most "
-             << 100. * run.utilization.value << " % of a bound was needed";
+        std::string text =
+          "friction has never acted: nothing has slipped, and at most " +
+          number(100. * run.utilization.value, 3) + " % of a bound was needed";
         if (scene.on_any_boundary([](const auto &b) {
               return b.has_friction() && !b.is_unilateral();
             }))
-          text << "; on bilateral contact 'Friction law' = glued gives the "
+          text += "; on bilateral contact 'Friction law' = glued gives the "
                   "same for less";
-        text << '.';
+        text += '.';
         // The tolerance of a quantity may leave stresses far less exact.
         if (run.errors)
-          text << " Tractions of single nodes, as where cells change their "
-                  "size, have errors of the order of that in the energy norm, "
-               << 100. * run.errors->relative() << " %.";
-        result.push_back(text.str());
+          text +=
+            " Tractions of single nodes, as where cells change their "
+            "size, have errors of the order of that in the energy norm, " +
+            number(100. * run.errors->relative(), 3) + " %.";
+        result.push_back(text);
       }
     bool has_given_bound = false, has_computed_pressure = false,
          gives_way = false;

@@ -114,23 +114,15 @@ namespace Viscoplastic
   {
     std::set<RecordedField> result{RecordedField::stress,
                                    RecordedField::von_mises_stress};
-    const auto add_if = [&](const bool condition, const RecordedField field) {
-      if (condition)
+    if (scene.has_irreversible_stress())
+      result.insert(RecordedField::irreversible_stress);
+    if (scene.has_history())
+      result.insert(RecordedField::history);
+    if (scene.temperature)
+      result.insert(RecordedField::temperature);
+    for (const RecordedField field : scene.parameters.output.additional_fields)
+      if (is_mean(field))
         result.insert(field);
-    };
-    add_if(scene.has_irreversible_stress(), RecordedField::irreversible_stress);
-    add_if(scene.has_history(), RecordedField::history);
-    add_if(scene.temperature != nullptr, RecordedField::temperature);
-    const OutputParameters &asked = scene.parameters.output;
-    add_if(asked.has(AdditionalField::total_strain),
-           RecordedField::total_strain);
-    add_if(asked.has(AdditionalField::irreversible_strain),
-           RecordedField::irreversible_strain);
-    add_if(asked.has(AdditionalField::creep_strain),
-           RecordedField::creep_strain);
-    add_if(asked.has(AdditionalField::creep_rate), RecordedField::creep_rate);
-    add_if(asked.has(AdditionalField::principal_stresses),
-           RecordedField::principal_stresses);
     return result;
   }
 

@@ -159,7 +159,8 @@ namespace Viscoplastic
   BoundaryFields<dim>::of_output(const Scene<dim>       &scene,
                                  const ContactFace<dim> *face)
   {
-    const OutputParameters &asked = scene.parameters.output;
+    const std::set<RecordedField> &asked =
+      scene.parameters.output.additional_fields;
     std::set<RecordedField> result{RecordedField::slip,
                                    RecordedField::slip_rate};
     if (scene.has_unilateral_contact())
@@ -170,10 +171,10 @@ namespace Viscoplastic
                        RecordedField::bound,
                        RecordedField::utilization,
                        RecordedField::stick});
-        if (asked.has(AdditionalField::friction_work))
+        if (asked.count(RecordedField::friction_work) == 1)
           result.insert(RecordedField::friction_work);
       }
-    if (asked.has(AdditionalField::normal_traction))
+    if (asked.count(RecordedField::normal_traction) == 1)
       result.insert(RecordedField::normal_traction);
     return result;
   }

@@ -3,6 +3,7 @@
 
 #include <viscoplastic_contact/discretization/energy.h>
 #include <viscoplastic_contact/results/field_probes.h>
+#include <viscoplastic_contact/results/unit_labels.h>
 
 namespace Viscoplastic
 {
@@ -124,21 +125,25 @@ namespace Viscoplastic
       {
         const bool is_boundary =
           integral.domain == OutputIntegral::Domain::boundary;
-        pieces.push_back(is_boundary ? pieces_of_faces(integral) :
-                                       pieces_of_cells(integral));
-        all_names.push_back((is_boundary ? "area_" : "volume_") +
-                            integral.name());
+        pieces.push_back(pieces_of(integral));
+        const auto add = [&](const std::string &name,
+                             const Quantity     quantity,
+                             const bool         is_of_step = false) {
+          all_names.push_back(name);
+          quantities.push_back(quantity);
+          is_dissipation.push_back(is_of_step);
+        };
+        add((is_boundary ? "area_" : "volume_") + integral.name(),
+            is_boundary ? Quantity::area : Quantity::volume);
         for (const auto &names : {BodyFields<dim>::names(integral.fields),
                                   BoundaryFields<dim>::names(integral.fields)})
           for (const std::string &name : names)
-            all_names.push_back("integral_" + integral.name() + "_" + name);
-        is_dissipation.resize(all_names.size(), false);
+            add("integral_" + integral.name() + "_" + name,
+                integrated(quantity_of_field(name), is_boundary));
         if (!integral.energies)
           continue;
-        for (const char *name : {"stored_energy_", "viscous_dissipation_"})
-          all_names.push_back(name + integral.name());
-        is_dissipation.push_back(false);
-        is_dissipation.push_back(true);
+        add("stored_energy_" + integral.name(), Quantity::energy);
+        add("viscous_dissipation_" + integral.name(), Quantity::energy, true);
         const StressSpace<dim> &space = discretization.stress_space;
         if (!points)
           points = std::make_unique<const StressSpace<dim>>(
@@ -153,68 +158,58 @@ namespace Viscoplastic
 
   template <int dim>
   std::vector<typename FieldIntegrals<dim>::Piece>
-  FieldIntegrals<dim>::pieces_of_cells(const OutputIntegral &integral) const
+  FieldIntegrals<dim>::pieces_of(const OutputIntegral &integral) const
   {
-    const AdmissibleSpace<dim> &space = discretization.space;
-    std::vector<Piece>          result;
-    FEValues<dim>               fe_values(space.mapping,
-                            space.dof_handler.get_fe(),
-                            QGauss<dim>(2),
-                            update_values | update_JxW_values);
+    using Domain                       = OutputIntegral::Domain;
+    const AdmissibleSpace<dim> &space  = discretization.space;
+    const FiniteElement<dim>   &fe     = space.dof_handler.get_fe();
+    const UpdateFlags           update = update_values | update_JxW_values;
+    FEValues<dim>      of_cell(space.mapping, fe, QGauss<dim>(2), update);
+    FEFaceValues<dim>  of_face(space.mapping,
+                              fe,
+                              QGauss<dim - 1>(2),
+                              update | update_normal_vectors);
+    std::vector<Piece> result;
+    const auto         add = [&](const FEValuesBase<dim> &values,
+                         const std::size_t        cell,
+                         const unsigned int       face) {
+      Piece piece{cell, face, {}, {}};
+      for (const unsigned int q : values.quadrature_point_indices())
+        for (unsigned int v = 0; v < piece.weights.size(); ++v)
+          piece.weights[v] += values.shape_value(v * dim, q) * values.JxW(q);
+      result.push_back(piece);
+    };
     for (std::size_t c = 0; c < space.cells.size(); ++c)
       {
-        const types::material_id id = space.cells[c]->material_id();
-        if (!space.scene.is_present(id) ||
-            (integral.domain == OutputIntegral::Domain::material &&
-             id != integral.id))
+        const auto              &cell = space.cells[c];
+        const types::material_id id   = cell->material_id();
+        if (!space.scene.is_present(id))
           continue;
-        fe_values.reinit(space.cells[c]);
-        Piece piece{c, numbers::invalid_unsigned_int, {}, {}};
-        for (const unsigned int q : fe_values.quadrature_point_indices())
-          for (unsigned int v = 0; v < piece.weights.size(); ++v)
-            piece.weights[v] +=
-              fe_values.shape_value(v * dim, q) * fe_values.JxW(q);
-        result.push_back(piece);
+        if (integral.domain == Domain::body ||
+            (integral.domain == Domain::material && id == integral.id))
+          {
+            of_cell.reinit(cell);
+            add(of_cell, c, numbers::invalid_unsigned_int);
+          }
+        if (integral.domain == Domain::boundary)
+          for (const unsigned int f : cell->face_indices())
+            if (cell->at_boundary(f) &&
+                cell->face(f)->boundary_id() == integral.id)
+              {
+                of_face.reinit(cell, f);
+                add(of_face, c, f);
+                Tensor<1, dim> normal;
+                double         area = 0.;
+                for (const unsigned int q : of_face.quadrature_point_indices())
+                  {
+                    normal += of_face.normal_vector(q) * of_face.JxW(q);
+                    area += of_face.JxW(q);
+                  }
+                // On the axis of a ring there is none.
+                if (area > 0.)
+                  result.back().normal = normal / area;
+              }
       }
-    return result;
-  }
-
-
-
-  template <int dim>
-  std::vector<typename FieldIntegrals<dim>::Piece>
-  FieldIntegrals<dim>::pieces_of_faces(const OutputIntegral &integral) const
-  {
-    const AdmissibleSpace<dim> &space = discretization.space;
-    std::vector<Piece>          result;
-    FEFaceValues<dim>           fe_values(space.mapping,
-                                space.dof_handler.get_fe(),
-                                QGauss<dim - 1>(2),
-                                update_values | update_JxW_values |
-                                  update_normal_vectors);
-    for (std::size_t c = 0; c < space.cells.size(); ++c)
-      for (const unsigned int f : space.cells[c]->face_indices())
-        {
-          const auto face = space.cells[c]->face(f);
-          if (!face->at_boundary() || face->boundary_id() != integral.id ||
-              !space.scene.is_present(space.cells[c]->material_id()))
-            continue;
-          fe_values.reinit(space.cells[c], f);
-          Piece  piece{c, f, {}, {}};
-          double area = 0.;
-          for (const unsigned int q : fe_values.quadrature_point_indices())
-            {
-              for (unsigned int v = 0; v < piece.weights.size(); ++v)
-                piece.weights[v] +=
-                  fe_values.shape_value(v * dim, q) * fe_values.JxW(q);
-              piece.normal += fe_values.normal_vector(q) * fe_values.JxW(q);
-              area += fe_values.JxW(q);
-            }
-          // On the axis of a ring there is none.
-          if (area > 0.)
-            piece.normal /= area;
-          result.push_back(piece);
-        }
     return result;
   }
 

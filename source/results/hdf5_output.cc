@@ -214,7 +214,7 @@ namespace Viscoplastic
           }
       }
       const auto check = [&]() {
-        AssertThrow(good, ExcMessage("HDF5 cannot write '" + file + "'."));
+        require(good, "HDF5 cannot write '" + file + "'.");
       };
       if (!ranks)
         {
@@ -282,8 +282,8 @@ namespace Viscoplastic
 
     const std::string record = record_name("solution", times.size() - 1);
     const bool        is_new =
-      Utilities::MPI::max(mesh == nullptr || *mesh != *mesh_now ? 1 : 0,
-                          communicator) == 1;
+      Utilities::MPI::logical_or(mesh == nullptr || *mesh != *mesh_now,
+                                 communicator);
     if (is_new)
       {
         mesh      = mesh_now;

@@ -2,69 +2,13 @@
 #include <viscoplastic_contact/base/files.h>
 #include <viscoplastic_contact/base/messages.h>
 #include <viscoplastic_contact/results/line_output.h>
+#include <viscoplastic_contact/results/statistics.h>
 #include <viscoplastic_contact/results/unit_labels.h>
 
-#include <cstdlib>
-#include <filesystem>
 #include <iomanip>
 
 namespace Viscoplastic
 {
-  namespace
-  {
-    /// The displacement and what the scene asks for besides.
-    std::set<RecordedField>
-    fields_of_lines(const OutputParameters &asked)
-    {
-      std::set<RecordedField> result = asked.line_fields;
-      result.insert(RecordedField::displacement);
-      return result;
-    }
-
-
-
-    /// How many bytes of a file belong to steps up to one. Throws ExcMessage
-    /// if it has no complete row of that step's output or an earlier one.
-    std::uintmax_t
-    size_up_to(const std::string &name, const unsigned int last_step)
-    {
-      std::ifstream  file(name, std::ios::binary);
-      std::string    line;
-      std::uintmax_t size   = 0;
-      std::size_t    n_rows = 0;
-      // A line without its end is unfinished.
-      for (bool is_header = true; std::getline(file, line) && !file.eof();
-           is_header      = false)
-        {
-               if (!is_header)
-            {
-                   if (std::strtoul(line.c_str(), nullptr, 10) > last_step)
-                break;
-              ++n_rows;
-            }
-          size += line.size() + 1;
-        }
-      AssertThrow(n_rows > 0,
-                  ExcMessage("The rows up to step " +
-                             std::to_string(last_step) +
-                             ", with which the run would go on, are not in '" +
-                             name + "'."));
-      return size;
-    }
-
-
-
-    void
-    check(const std::ofstream &file, const std::string &name)
-    {
-      AssertThrow(file,
-                  ExcMessage("Writing to '" + name +
-                             "' failed; is the disk full?"));
-    }
-  } // namespace
-
-
-
   std::string
   line_file_name(const std::size_t i)
   {
@@ -76,8 +20,10 @@ namespace Viscoplastic
   template <int dim>
   LineOutput<dim>::LineOutput(const Scene<dim> &scene)
     : scene(scene)
-    , fields(fields_of_lines(scene.parameters.output))
-  {}
+    , fields(scene.parameters.output.line_fields)
+  {
+    fields.insert(RecordedField::displacement);
+  }
 
 
 
@@ -105,8 +51,7 @@ namespace Viscoplastic
         {
           require_writable_file(name);
           files.emplace_back(name);
-          AssertThrow(files.back(),
-                      ExcMessage("The file '" + name + "' cannot be written."));
+          require(files.back(), "The file '" + name + "' cannot be written.");
         }
     });
   }
@@ -120,21 +65,11 @@ namespace Viscoplastic
   {
     name_files(directory);
     fail_together(discretization->space.communicator, [&] {
-      std::vector<std::uintmax_t> sizes;
+      std::vector<TableBeginning> beginnings;
       for (const std::string &name : names)
-        {
-          require_writable_file(name);
-          sizes.push_back(size_up_to(name, last_step));
-        }
+        beginnings.push_back(beginning_of_table(name, last_step));
       for (std::size_t i = 0; i < names.size(); ++i)
-        {
-          std::error_code error;
-          std::filesystem::resize_file(names[i], sizes[i], error);
-          files.emplace_back(names[i], std::ios::app);
-          AssertThrow(!error && files.back(),
-                      ExcMessage("The file '" + names[i] +
-                                 "' cannot be written."));
-        }
+        files.push_back(append_to_table(names[i], beginnings[i]));
     });
   }
 
@@ -186,7 +121,8 @@ namespace Viscoplastic
               file << '\n';
             }
           file << std::flush;
-          check(file, names[i]);
+          require(file,
+                  "Writing to '" + names[i] + "' failed; is the disk full?");
         });
       }
   }

@@ -368,13 +368,10 @@ namespace Viscoplastic
         fields.push_back(field);
     if (fields.empty())
       return "";
-    std::ostringstream remark;
-    remark << "Warning: '" << path << file << "' has " << std::setprecision(2)
-           << std::numeric_limits<float>::max()
-           << ", the largest number of single precision, where the values of "
-           << enumeration(fields)
-           << " are larger; choose other units to see them.";
-    return remark.str();
+    return "Warning: '" + path + file + "' has " +
+           number(std::numeric_limits<float>::max(), 2) +
+           ", the largest number of single precision, where the values of " +
+           enumeration(fields) + " are larger; choose other units to see them.";
   }
 
 

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <viscoplastic_contact/base/messages.h>
 #include <viscoplastic_contact/discretization/compatibility.h>
 #include <viscoplastic_contact/discretization/initial_state.h>
 #include <viscoplastic_contact/error/kelly_estimator.h>
@@ -154,7 +155,7 @@ namespace Viscoplastic
     run.largest_error.update(errors.error);
     run.largest_exact.update(errors.exact);
     run.has_viscosity = scene.has_viscosity();
-    run.has_flowed    = balance.viscous_dissipation() != 0.;
+    run.has_flowed    = balance.viscous_dissipation != 0.;
     run.has_friction  = scene.has_friction();
     if (run.has_friction)
       {
@@ -242,12 +243,8 @@ namespace Viscoplastic
         if (area > 0.)
           present.slipping = friction.slip_area / area;
         if (friction.max_slip > 0.)
-          {
-            std::ostringstream rate;
-            rate << std::setprecision(2) << friction.max_slip / time_step.k
-                 << scene.unit(Quantity::velocity);
-            present.slip_rate = rate.str();
-          }
+          present.slip_rate = number(friction.max_slip / time_step.k, 2) +
+                              scene.unit(Quantity::velocity);
       }
     if (scene.is_adaptive() && !has_error_estimate)
       present.error_estimate = quantities.refinement_estimate;
@@ -297,13 +294,11 @@ namespace Viscoplastic
          {std::make_pair("displacement", run.displacement.value),
           std::make_pair("von Mises stress", run.von_mises.value),
           std::make_pair("force", largest_force)})
-      AssertThrow(!(size > largest_size) &&
-                    !(at_end && size > 0. && size < least_size),
-                  ExcMessage(out_of_range("The largest " + std::string(what) +
-                                            " of the run",
-                                          size,
-                                          least_size,
-                                          largest_size)));
+      if (size > largest_size || (at_end && size > 0. && size < least_size))
+        require_in_range("The largest " + std::string(what) + " of the run",
+                         size,
+                         least_size,
+                         largest_size);
   }
 
 

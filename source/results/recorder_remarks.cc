@@ -78,29 +78,27 @@ namespace Viscoplastic
       if (!is_far && !(run.strain.value >
                        (scene.parameters.units.are_declared() ? 0.1 : 1.)))
         return "";
-      std::ostringstream text;
-      text << std::setprecision(3)
-           << "Note: at t = " << (is_far ? run.displacement.t : run.strain.t)
-           << scene.unit(Quantity::time);
-      if (is_far)
-        text << " the largest displacement is " << run.displacement.value / size
-             << " times the size of the body";
-      else
-        text << " the norm of the strain is " << run.strain.value
-             << " in the mean of what is deformed";
+      const std::string what =
+        "Note: at t = " +
+        number(is_far ? run.displacement.t : run.strain.t, 3) +
+        scene.unit(Quantity::time) +
+        (is_far ? " the largest displacement is " +
+                    number(run.displacement.value / size, 3) +
+                    " times the size of the body" :
+                  " the norm of the strain is " + number(run.strain.value, 3) +
+                    " in the mean of what is deformed");
       if (run.strain.value > 1. && run.displacement.value < 0.05 * size)
-        text << ", although displacements are small: a point alone carries "
-                "force, as where a symmetry ends, and strains there grow as "
-                "cells become smaller (the stress is largest at x = ("
-             << run.von_mises_position << ")).";
-      else
-        text << "; small strains are assumed, so that "
-             << (is_far || run.strain.value > 1. ?
-                   "this is flow without end or a load far too large, and "
-                   "only its onset means something." :
-                   "results may be wrong by about that, relatively, which no "
-                   "error bar has.");
-      return text.str();
+        return what +
+               ", although displacements are small: a point alone carries "
+               "force, as where a symmetry ends, and strains there grow as "
+               "cells become smaller (the stress is largest at x = (" +
+               as_text(run.von_mises_position, 3) + ")).";
+      return what + "; small strains are assumed, so that " +
+             (is_far || run.strain.value > 1. ?
+                "this is flow without end or a load far too large, and "
+                "only its onset means something." :
+                "results may be wrong by about that, relatively, which no "
+                "error bar has.");
     }
 
 
@@ -149,32 +147,32 @@ namespace Viscoplastic
           loss_by_rounding(*discretization, step, quantities, largest_force);
         !loss.empty())
       throw StepFailure(step.time_step.n, step.time_step.t, loss);
+    const auto remark_once = [this](const std::string &subject,
+                                    const std::string &sentence) {
+      if (told.insert(subject).second)
+        console.remark(sentence);
+    };
     // Beside stresses that balance each other the forces may be nothing.
     const bool is_beside_stresses =
       quantities.largest_force * quantities.max_displacement <
       std::min(1., 1e3 * step.report.tolerance) * quantities.stored_energy;
-    if (step.time_step.n > 0 && !balance_is_doubtful && !is_beside_stresses &&
+    if (step.time_step.n > 0 && !is_beside_stresses &&
         defect > std::max(1e-8, std::min(1e3 * step.report.tolerance, 1e-2)))
-      {
-        balance_is_doubtful = true;
-        console.remark("Warning: forces balance only to " + number(defect, 6) +
-                       " of the largest " + when +
-                       "; a smaller 'Solver/Contact tolerance' mends this "
-                       "unless Poisson's ratio is next to 1/2 or the body "
-                       "hardly resists.");
-      }
-    if (!solver_error_is_told && step.report.tolerance > 0. &&
+      remark_once("balance",
+                  "Warning: forces balance only to " + number(defect, 6) +
+                    " of the largest " + when +
+                    "; a smaller 'Solver/Contact tolerance' mends this unless "
+                    "Poisson's ratio is next to 1/2 or the body hardly "
+                    "resists.");
+    if (step.report.tolerance > 0. &&
         step.report.relative_error > 1.01 * step.report.tolerance)
-      {
-        solver_error_is_told = true;
-        console.remark("Warning: rounding leaves an error of the solver of " +
-                       number(step.report.relative_error, 6) + ' ' + when +
-                       ", more than its tolerance of " +
-                       number(step.report.tolerance, 6) +
-                       ": cells that are less flat, stiffness that differs "
-                       "less or Poisson's ratio farther from 1/2 would leave "
-                       "less.");
-      }
+      remark_once("error of the solver",
+                  "Warning: rounding leaves an error of the solver of " +
+                    number(step.report.relative_error, 6) + ' ' + when +
+                    ", more than its tolerance of " +
+                    number(step.report.tolerance, 6) +
+                    ": cells that are less flat, stiffness that differs less "
+                    "or Poisson's ratio farther from 1/2 would leave less.");
     constexpr unsigned int most_doubts = 3; // that are told
     if (!step.report.doubt.empty() && run.doubtful_steps.size() < most_doubts)
       {
@@ -185,39 +183,34 @@ namespace Viscoplastic
           step.report.doubt + '.');
         console.remark("Warning: " + run.doubtful_steps.back());
       }
-    if (!is_loose && step.time_step.n > 0 &&
-        discretization->space.is_held_by_contact())
+    if (step.time_step.n > 0 && discretization->space.is_held_by_contact())
       {
         double pushes = 0.;
         for (const auto &multiplier : step.end.state.contact.multiplier)
           pushes += multiplier.norm();
-        is_loose =
-          Utilities::MPI::sum(pushes, discretization->space.communicator) <=
-          1e-8 * step.end.forces.internal.l1_norm();
-        if (is_loose)
-          console.remark("Note: " + when +
-                         " nothing presses the body onto its foundation, so "
-                         "that its rigid motions are arbitrary; a small load "
-                         "that presses it determines them.");
+        if (Utilities::MPI::sum(pushes, discretization->space.communicator) <=
+            1e-8 * step.end.forces.internal.l1_norm())
+          remark_once("loose body",
+                      "Note: " + when +
+                        " nothing presses the body onto its foundation, so "
+                        "that its rigid motions are arbitrary; a small load "
+                        "that presses it determines them.");
       }
     // Beside the nodal forces of the stress: loads may balance each other.
-    if (!scene.supports.empty() && !support_carries && step.time_step.n > 0)
+    if (!scene.supports.empty() && step.time_step.n > 0)
       {
         const double size = step.end.forces.internal.l1_norm();
         for (const Support<dim> &support : scene.supports)
-          {
-            const double force =
-              stable_norm(quantities.reactions.at(support.condition.id));
-            if (support_carries || force <= 1e-3 * size)
-              continue;
-            support_carries = true;
-            console.remark("Note: " + when + " the support at " +
-                           support.place + " carries a force, of " +
-                           number(force, 6) + scene.unit(Quantity::force) +
-                           "; there is no bounded stress there, and the body "
-                           "gives way at the support without bound as the "
-                           "mesh is refined.");
-          }
+          if (const double force =
+                stable_norm(quantities.reactions.at(support.condition.id));
+              force > 1e-3 * size)
+            remark_once("support",
+                        "Note: " + when + " the support at " + support.place +
+                          " carries a force, of " + number(force, 6) +
+                          scene.unit(Quantity::force) +
+                          "; there is no bounded stress there, and the body "
+                          "gives way at the support without bound as the mesh "
+                          "is refined.");
       }
     if (run.capped_volume.value == 0. && step.capped_volume > 0.)
       console.remark("Warning: the stress has passed the cap of a law, in the "
@@ -370,7 +363,7 @@ namespace Viscoplastic
 
     // What is missing is the work of friction, see EnergyBalance.
     if (const double missing = balance.defect(),
-        friction             = balance.friction_dissipation();
+        friction             = balance.friction_dissipation;
         run.has_friction && !scene.has_stages() &&
         std::abs(missing) > 0.05 * friction &&
         std::abs(missing) > 1e-3 * balance.scale())
@@ -398,9 +391,9 @@ namespace Viscoplastic
       result.push_back("Note: " + what);
 
     // What meshes do is no physics.
-    if (std::abs(balance.adaptation_energy()) > 0.1 * balance.scale())
+    if (std::abs(balance.adaptation_energy) > 0.1 * balance.scale())
       result.push_back("Warning: changes of the mesh have added " +
-                       number(balance.adaptation_energy(), 3) +
+                       number(balance.adaptation_energy, 3) +
                        " to the stored energy beyond the work of the loads, "
                        "beside " +
                        number(balance.scale(), 3) +

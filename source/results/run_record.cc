@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <viscoplastic_contact/base/files.h>
+#include <viscoplastic_contact/base/messages.h>
 #include <viscoplastic_contact/base/table.h>
 #include <viscoplastic_contact/base/version.h>
 #include <viscoplastic_contact/results/line_output.h>
@@ -115,10 +116,10 @@ namespace Viscoplastic
         std::error_code none;
         if (!std::filesystem::is_regular_file(path + name, none))
           continue;
-        AssertThrow(is_own(path + name, beginning),
-                    ExcMessage("The results would overwrite '" + path + name +
-                               "', which this program has not written; "
-                               "choose another 'Output/Directory'."));
+        require(is_own(path + name, beginning),
+                "The results would overwrite '" + path + name +
+                  "', which this program has not written; choose another "
+                  "'Output/Directory'.");
       }
   }
 
@@ -222,10 +223,10 @@ namespace Viscoplastic
   {
     std::error_code error;
     std::filesystem::create_directories(path, error);
-    AssertThrow(!error,
-                ExcMessage("The results directory '" + path +
-                           "' cannot be written; change 'Output/Directory' or "
-                           "its permissions."));
+    require(
+      !error,
+      "The results directory '" + path +
+        "' cannot be written; change 'Output/Directory' or its permissions.");
   }
 
 

@@ -127,10 +127,8 @@ namespace Viscoplastic
       const auto           with_place = [&](const Largest    &largest,
                                   const Quantity    quantity,
                                   const Point<dim> &position) {
-        std::ostringstream place;
-        place << std::setprecision(3) << position;
-        return with.at_time(largest, quantity) + ", x = (" + place.str() + ")" +
-               units.suffix(Quantity::length, dim);
+        return with.at_time(largest, quantity) + ", x = (" +
+               as_text(position, 3) + ")" + units.suffix(Quantity::length, dim);
       };
       out << "Largest in the run:\n";
       print_row(out,
@@ -233,11 +231,12 @@ namespace Viscoplastic
                 const ErrorSummary    &errors)
     {
       const auto part = [&](const std::string &name, const double value) {
-        std::ostringstream text;
-        text << std::setprecision(2) << value;
-        if (errors.size > 0.)
-          text << " (" << 100. * value / errors.size << " %)";
-        print_row(out, name, text.str());
+        print_row(out,
+                  name,
+                  number(value, 2) +
+                    (errors.size > 0. ?
+                       " (" + number(100. * value / errors.size, 2) + " %)" :
+                       ""));
       };
       const ErrorParts &largest = errors.largest;
       part("mesh", largest.space);
@@ -361,12 +360,13 @@ namespace Viscoplastic
                    phase.text);
         if (phase.name == "contact" && plain_solves)
           {
-            std::ostringstream text;
-            text << "active set";
-            if (*plain_solves > 0.)
-              text << "; with it, solves take " << std::setprecision(3)
-                   << solves / *plain_solves << " times as long";
-            print_line("friction", friction(), text.str());
+            print_line("friction",
+                       friction(),
+                       *plain_solves > 0. ?
+                         "active set; with it, solves take " +
+                           number(solves / *plain_solves, 3) +
+                           " times as long" :
+                         "active set");
           }
         remaining.erase(found);
       }
@@ -375,11 +375,11 @@ namespace Viscoplastic
       print_line(name, time, "");
     const double others = rest;
     print_line("rest", others, "mesh, initial state, progress");
-    std::ostringstream before;
-    if (earlier > 0.)
-      before << "since the restart, " << std::setprecision(3) << earlier
-             << " s before it";
-    print_line("whole run", total, before.str());
+    print_line("whole run",
+               total,
+               earlier > 0. ?
+                 "since the restart, " + number(earlier, 3) + " s before it" :
+                 "");
   }
 
 

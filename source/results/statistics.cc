@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <deal.II/base/exceptions.h>
 
 #include <viscoplastic_contact/base/files.h>
+#include <viscoplastic_contact/base/messages.h>
 #include <viscoplastic_contact/results/statistics.h>
 
 #include <cmath>
 #include <filesystem>
 #include <iomanip>
-#include <sstream>
 
 namespace Viscoplastic
 {
@@ -22,7 +21,43 @@ namespace Viscoplastic
   {
     require_writable_file(name);
     file.open(name);
-    AssertThrow(file, ExcMessage("The file '" + name + "' cannot be written."));
+    require(file, "The file '" + name + "' cannot be written.");
+  }
+
+
+
+  TableBeginning
+  beginning_of_table(const std::string &name, const unsigned int last_step)
+  {
+    require_writable_file(name);
+    std::ifstream  file(name, std::ios::binary);
+    TableBeginning result;
+    std::string    line;
+    // A line without its end is unfinished.
+    for (; std::getline(file, line) && !file.eof();
+         result.size += line.size() + 1)
+      if (result.size == 0)
+        result.header = line;
+      else if (std::strtoul(line.c_str(), nullptr, 10) <= last_step)
+        ++result.n_rows;
+      else
+        break;
+    require(result.n_rows > 0,
+            "The rows up to step " + std::to_string(last_step) +
+              ", with which the run would go on, are not in '" + name + "'.");
+    return result;
+  }
+
+
+
+  std::ofstream
+  append_to_table(const std::string &name, const TableBeginning &beginning)
+  {
+    std::error_code error;
+    std::filesystem::resize_file(name, beginning.size, error);
+    std::ofstream file(name, std::ios::app);
+    require(!error && file, "The file '" + name + "' cannot be written.");
+    return file;
   }
 
 
@@ -31,38 +66,14 @@ namespace Viscoplastic
                          const unsigned int last_step)
     : name(file_name)
   {
-    require_writable_file(name);
-    std::ifstream  old_file(name, std::ios::binary);
-    std::string    line;
-    std::uintmax_t size     = 0;
-    const auto     get_line = [&]() {
-      // A line without its end is unfinished.
-      if (!std::getline(old_file, line) || old_file.eof())
-        return false;
-      size += line.size() + 1;
-      return true;
-    };
-    unsigned int n_rows = 0;
-    if (get_line())
-      {
-        std::istringstream header(line);
-        std::string        column;
-        while (std::getline(header, column, ','))
-          columns.push_back(without_label(column));
-        while (n_rows <= last_step && get_line() &&
-               line.compare(0, line.find(','), std::to_string(n_rows)) == 0)
-          ++n_rows;
-      }
-    AssertThrow(n_rows == last_step + 1,
-                ExcMessage("The rows up to step " + std::to_string(last_step) +
-                           ", with which the run would go on, are not in '" +
-                           name + "'."));
-    old_file.close();
-    std::error_code error;
-    std::filesystem::resize_file(name, size, error);
-    file.open(name, std::ios::app);
-    AssertThrow(!error && file,
-                ExcMessage("The file '" + name + "' cannot be written."));
+    const TableBeginning beginning = beginning_of_table(name, last_step);
+    require(beginning.n_rows == last_step + 1,
+            "The rows up to step " + std::to_string(last_step) +
+              ", with which the run would go on, are not in '" + name + "'.");
+    for (const std::string &column :
+         Utilities::split_string_list(beginning.header))
+      columns.push_back(without_label(column));
+    file = append_to_table(name, beginning);
   }
 
 
@@ -78,18 +89,18 @@ namespace Viscoplastic
         {
           names.push_back(entry.column(i));
           values.push_back(entry.values[i]);
-          header += (header.empty() ? "" : ",") + names.back() +
-                    units.label(entry.quantity, dim);
+          if (columns.empty())
+            header += (header.empty() ? "" : ",") + names.back() +
+                      units.label(entry.quantity, dim);
         }
     if (columns.empty())
       {
         columns = names;
         file << header << '\n';
       }
-    AssertThrow(columns == names,
-                ExcMessage("The columns of '" + name +
-                           "' are not those of this run, which cannot go on "
-                           "with it."));
+    require(columns == names,
+            "The columns of '" + name +
+              "' are not those of this run, which cannot go on with it.");
     // A result that is none must not pass for one. No limit is imposed where
     // nothing flows.
     for (std::size_t i = 0; i < values.size(); ++i)
@@ -103,23 +114,18 @@ namespace Viscoplastic
           column == "estimate_recovery" ||
           // Of a point in an absent material.
           (column.rfind("point", 0) == 0 && std::isnan(value));
-        if (std::isfinite(value) || is_limit || is_unknown)
-          continue;
-        std::ostringstream message;
-        message << "In step " << values[0] << ", '" << column << "' is "
-                << value
-                << "; it must be finite: the numbers of this scene leave the "
-                   "range of floating-point numbers, choose other units or "
-                   "look for a datum that is too large or too small.";
-        AssertThrow(false, ExcMessage(message.str()));
+        if (!std::isfinite(value) && !is_limit && !is_unknown)
+          refuse("In step " + as_text(values[0]) + ", '" + column + "' is " +
+                 as_text(value) +
+                 "; it must be finite: the numbers of this scene leave the "
+                 "range of floating-point numbers, choose other units or look "
+                 "for a datum that is too large or too small.");
       }
     file << std::setprecision(12);
     for (std::size_t i = 0; i < values.size(); ++i)
       file << (i == 0 ? "" : ",") << values[i];
     file << std::endl;
-    AssertThrow(file,
-                ExcMessage("Writing to '" + name +
-                           "' failed; is the disk full?"));
+    require(file, "Writing to '" + name + "' failed; is the disk full?");
   }
 
 

@@ -156,26 +156,26 @@ namespace Viscoplastic
                                      const double       energy) {
         row.add(name, energy, Quantity::energy, row.printed);
       };
-      add_energy("stored_energy", balance.stored_energy());
+      add_energy("stored_energy", balance.stored_energy);
       row.add("strain_energy",
               forces.strain_energy - quantities.spring_energy,
               Quantity::energy);
       if (d.springs)
         row.add("spring_energy", quantities.spring_energy, Quantity::energy);
       if (scene.has_viscosity())
-        add_energy("viscous_dissipation", balance.viscous_dissipation());
+        add_energy("viscous_dissipation", balance.viscous_dissipation);
       if (d.face)
         row.add("friction_dissipation",
-                balance.friction_dissipation(),
+                balance.friction_dissipation,
                 Quantity::energy,
                 scene.has_friction());
-      add_energy("external_work", balance.external_work());
+      add_energy("external_work", balance.external_work);
       if (scene.has_thermal_strain())
-        add_energy("thermal_work", balance.thermal_work());
+        add_energy("thermal_work", balance.thermal_work);
       if (scene.is_adaptive())
-        add_energy("adaptation_energy", balance.adaptation_energy());
+        add_energy("adaptation_energy", balance.adaptation_energy);
       if (scene.has_stages())
-        add_energy("construction_energy", balance.construction_energy());
+        add_energy("construction_energy", balance.construction_energy);
       add_energy("energy_balance_defect", balance.defect());
     }
   } // namespace
@@ -296,7 +296,7 @@ namespace Viscoplastic
     for (std::size_t i = 0; i < quantities.integrals.size(); ++i)
       row.add(integrals->names()[i],
               quantities.integrals[i],
-              quantity_of_integral(integrals->names()[i]));
+              integrals->quantity(i));
   }
 
 

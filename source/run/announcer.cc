@@ -5,8 +5,6 @@
 #include <viscoplastic_contact/mesh/mesh_size.h>
 #include <viscoplastic_contact/run/announcer.h>
 
-#include <iomanip>
-#include <sstream>
 #include <thread>
 
 namespace Viscoplastic
@@ -116,13 +114,12 @@ namespace Viscoplastic
       discretization.space.dof_handler.get_triangulation().n_cells(0);
     if (n_ranks > 1 && n_coarse >= 1e5)
       {
-        std::ostringstream text;
-        text << "Note: each of the " << n_ranks << " ranks keeps all "
-             << n_coarse << " coarse cells, some " << std::setprecision(2)
-             << 1e-9 * n_ranks * bytes_of_coarse_cells(dim, n_coarse)
-             << " GB in all. Cells that 'Geometry/Global refinements' makes "
-                "are shared among them.";
-        console.remark(text.str());
+        console.remark(
+          "Note: each of the " + std::to_string(n_ranks) + " ranks keeps all " +
+          as_text(n_coarse) + " coarse cells, some " +
+          number(1e-9 * n_ranks * bytes_of_coarse_cells(dim, n_coarse), 2) +
+          " GB in all. Cells that 'Geometry/Global refinements' makes are "
+          "shared among them.");
       }
     if (demand.choice == LinearSolver::direct)
       demand.choice = LinearSolver::automatic;
@@ -140,14 +137,13 @@ namespace Viscoplastic
     constexpr double short_run = 20.;
     if (std::max(present, of_best) < short_run || of_best > 0.75 * present)
       return;
-    std::ostringstream text;
-    text << "Ranks: " << best << (best == 1 ? " is" : " are")
-         << " expected to take " << std::setprecision(2) << of_best / present
-         << " of the time of " << n_ranks;
+    std::ostream &out = console.stream();
+    out << "Ranks: " << best << (best == 1 ? " is" : " are")
+        << " expected to take " << number(of_best / present, 2)
+        << " of the time of " << n_ranks;
     if (n_least < n_most)
-      text << ", more than " << n_least << " to lose again";
-    text << " (a model; see doc/cluster.md)\n";
-    console.stream() << text.str();
+      out << ", more than " << n_least << " to lose again";
+    out << " (a model; see doc/cluster.md)\n";
   }
 
 
@@ -162,15 +158,14 @@ namespace Viscoplastic
     std::vector<std::string> names;
     for (const types::boundary_id id : jump->boundaries)
       names.push_back(space.scene.names.of("boundary", id));
-    std::ostringstream text;
-    text << "Warning: what is prescribed of displacements jumps by "
-         << jump->size << space.scene.unit(Quantity::length) << " at x = ("
-         << jump->position << "), where " << enumeration(names)
-         << " meet (t = " << jump->t << space.scene.unit(Quantity::time)
-         << "). No displacement of finite energy does that: forces, energies "
-            "and errors grow with each finer mesh, and no error bar tells "
-            "their limit. Let the data agree where boundaries meet.";
-    console.remark(text.str());
+    console.remark(
+      "Warning: what is prescribed of displacements jumps by " +
+      as_text(jump->size) + space.scene.unit(Quantity::length) + " at x = (" +
+      as_text(jump->position) + "), where " + enumeration(names) +
+      " meet (t = " + as_text(jump->t) + space.scene.unit(Quantity::time) +
+      "). No displacement of finite energy does that: forces, energies and "
+      "errors grow with each finer mesh, and no error bar tells their limit. "
+      "Let the data agree where boundaries meet.");
   }
 
 
@@ -188,7 +183,8 @@ namespace Viscoplastic
         console.remark(
           "Note: nothing slips or opens on " +
           discretization.scene().names.of("boundary", id) +
-          ", although it has friction or unilateral contact: other conditions hold all of its nodes "
+          ", although it has friction or unilateral contact: other conditions "
+          "hold all of its nodes "
           "on the present mesh; refine it there, or release another boundary.");
   }
 

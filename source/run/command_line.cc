@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <deal.II/base/config.h>
 
-#include <deal.II/base/exceptions.h>
 #include <deal.II/base/utilities.h>
 
 #include <viscoplastic_contact/base/files.h>
@@ -51,14 +50,6 @@ namespace Viscoplastic
 
     using Task    = CommandLine::Task;
     using Restart = CommandLine::Restart;
-
-
-
-    void
-    require(const bool condition, const std::string &sentence)
-    {
-      AssertThrow(condition, ExcMessage(sentence));
-    }
 
 
 
@@ -233,56 +224,40 @@ namespace Viscoplastic
   std::string
   help_text()
   {
-    return "Usage: viscoplastic_contact [options] scene.prm [more.prm ...]\n"
-           "\n"
-           "Computes the scene that the parameter file describes. Further "
-           "files override\n"
-           "entries of the earlier ones. The scripts contrib/study, "
-           "contrib/effects and\n"
-           "contrib/price say what accuracy costs, what each effect changes, "
-           "and which mesh\n"
-           "and steps reach an error.\n"
-           "\n"
-           "  --set 'SECTION/ENTRY=VALUE'  override an entry of the files; may "
-           "be repeated\n"
-           "  --check[=json]               validate the scene and print its "
-           "effects, size,\n"
-           "                               solver and memory, without "
-           "computing it; =json:\n"
-           "                               its values and its mesh, for "
-           "programs; =means:\n"
-           "                               the means of its data, too\n"
-           "  --describe[=json]            print a parameter file with every "
-           "entry, its\n"
-           "                               meaning, unit, default and allowed "
-           "values;\n"
-           "                               for a scene, with its values and the "
-           "laws of\n"
-           "                               its shared libraries\n"
-           "  --restart                    go on from the last checkpoint of "
-           "this scene\n"
-           "  --restart=auto               the same, or begin where there is "
-           "none\n"
-           "  --quiet                      print nothing but errors\n"
-           "  --verbose                    a line for each step, also of long "
-           "runs\n"
-           "  --log FILE                   write the messages to FILE, too\n"
-           "  --version                    print version and libraries\n"
-           "  -h, --help                   print this text\n"
-           "  --                           what follows are files\n"
-           "\n"
-           "Results go to 'Output/Directory', by default output/<scene>/ in "
-           "the working\n"
-           "directory. Exit codes: 0 every step was solved to its tolerance, "
-           "1 something\n"
-           "was wrong (one sentence says what), 2 wrong arguments, 3 ended by "
-           "SIGTERM or\n"
-           "SIGINT after a checkpoint.\n"
-           "\n"
-           "In parallel: mpirun -n 4 viscoplastic_contact scene.prm\n"
-           "\n"
-           "Manual: " +
-           source_path("doc/index.md") + "\n";
+    return R"(Usage: viscoplastic_contact [options] scene.prm [more.prm ...]
+
+Computes the scene that the parameter file describes. Further files override
+entries of the earlier ones. The scripts contrib/study, contrib/effects and
+contrib/price say what accuracy costs, what each effect changes, and which mesh
+and steps reach an error.
+
+  --set 'SECTION/ENTRY=VALUE'  override an entry of the files; may be repeated
+  --check[=json]               validate the scene and print its effects, size,
+                               solver and memory, without computing it; =json:
+                               its values and its mesh, for programs; =means:
+                               the means of its data, too
+  --describe[=json]            print a parameter file with every entry, its
+                               meaning, unit, default and allowed values;
+                               for a scene, with its values and the laws of
+                               its shared libraries
+  --restart                    go on from the last checkpoint of this scene
+  --restart=auto               the same, or begin where there is none
+  --quiet                      print nothing but errors
+  --verbose                    a line for each step, also of long runs
+  --log FILE                   write the messages to FILE, too
+  --version                    print version and libraries
+  -h, --help                   print this text
+  --                           what follows are files
+
+Results go to 'Output/Directory', by default output/<scene>/ in the working
+directory. Exit codes: 0 every step was solved to its tolerance, 1 something
+was wrong (one sentence says what), 2 wrong arguments, 3 ended by SIGTERM or
+SIGINT after a checkpoint.
+
+In parallel: mpirun -n 4 viscoplastic_contact scene.prm
+
+Manual: )" +
+           source_path("doc/index.md") + '\n';
   }
 
 
@@ -291,24 +266,19 @@ namespace Viscoplastic
   guide_text()
   {
     const std::string demo = source_path("prm/demos/salt_pillar_2d.prm");
-    return "viscoplastic_contact computes how elastic-viscoplastic bodies "
-           "deform slowly, in\n"
-           "contact with friction on rigid foundations. A parameter file "
-           "describes the scene.\n"
-           "\n"
-           "Run a demo (seconds; the results are for ParaView):\n"
-           "    viscoplastic_contact " +
-           demo +
-           "\n"
-           "See whether a scene is right, and how large, before it runs:\n"
-           "    viscoplastic_contact --check " +
-           demo +
-           "\n"
-           "Begin a scene of your own from a file with every entry "
-           "explained:\n"
-           "    viscoplastic_contact --describe > my_scene.prm\n"
-           "\n"
-           "Other demos are in " +
+    return R"(viscoplastic_contact computes how elastic-viscoplastic bodies deform slowly, in
+contact with friction on rigid foundations. A parameter file describes the scene.
+
+Run a demo (seconds; the results are for ParaView):
+    viscoplastic_contact )" +
+           demo + R"(
+See whether a scene is right, and how large, before it runs:
+    viscoplastic_contact --check )" +
+           demo + R"(
+Begin a scene of your own from a file with every entry explained:
+    viscoplastic_contact --describe > my_scene.prm
+
+Other demos are in )" +
            source_path("prm/demos") + ", the manual begins at\n" +
            source_path("README.md") + " and " + source_path("doc/scene.md") +
            ".\nAll options: viscoplastic_contact --help\n";

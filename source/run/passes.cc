@@ -18,9 +18,10 @@ namespace Viscoplastic
       std::vector<std::string> result;
       for (const auto &[entry, value] : parameters.values())
         result.push_back(entry + "=" + value);
-      std::vector<StepsUntil> phases = read_phases(parameters.time.phases);
-      for (StepsUntil &phase : phases)
-        phase.n_steps = std::min(phase.n_steps, most_steps);
+      std::string phases;
+      for (const auto &phase : TimeSchedule(parameters.time.phases).phases)
+        phases += (phases.empty() ? "" : ", ") + number(phase.end, 17) + ": " +
+                  std::to_string(std::min(phase.n_steps, most_steps));
       for (const std::string &assignment :
            {std::string("Error control/Tolerance=0"),
             std::string("Exact solution/Reference directory="),
@@ -28,7 +29,7 @@ namespace Viscoplastic
             "Geometry/Global refinements=" +
               std::to_string(parameters.geometry.global_refinements +
                              refinements),
-            "Time/Phases=" + write_phases(phases),
+            "Time/Phases=" + phases,
             "Time/Scheme=" + name_of(parameters.time.scheme),
             "Time/Stiffness policy=" +
               name_of(StiffnessPolicy::backward_euler)})

@@ -4,7 +4,6 @@
 #include <viscoplastic_contact/run/run_files.h>
 
 #include <filesystem>
-#include <iomanip>
 
 namespace Viscoplastic
 {
@@ -83,15 +82,14 @@ namespace Viscoplastic
     auto                     found = checkpoints.newest(remarks);
     for (const std::string &remark : remarks)
       console.remark("Warning: " + remark + '.');
-    AssertThrow(found || remarks.empty(),
-                ExcMessage("None of the " + std::to_string(remarks.size()) +
-                           " checkpoint(s) in '" + checkpoints.directory +
-                           "' can be used: " + remarks[0] + '.'));
-    AssertThrow(found || restart == Restart::automatic,
-                ExcMessage("There is no checkpoint in '" +
-                           checkpoints.directory +
-                           "'; begin without --restart, or name the place in "
-                           "'Checkpoint/Directory' or 'Output/Directory'."));
+    if (!found && !remarks.empty())
+      refuse("None of the " + std::to_string(remarks.size()) +
+             " checkpoint(s) in '" + checkpoints.directory +
+             "' can be used: " + remarks[0] + '.');
+    require(found || restart == Restart::automatic,
+            "There is no checkpoint in '" + checkpoints.directory +
+              "'; begin without --restart, or name the place in "
+              "'Checkpoint/Directory' or 'Output/Directory'.");
     return found;
   }
 
@@ -208,30 +206,26 @@ namespace Viscoplastic
       return "";
     write_checkpoint(triangulation, time_stepper);
     schedule.restart_clock(run.recorder.elapsed());
-    std::ostringstream text;
-    text << "step " << state.n << " (t = " << state.t
-         << run.scene.unit(Quantity::time) << "): '"
-         << checkpoints.path(state.n) << "'";
+    const std::string text =
+      "step " + std::to_string(state.n) + " (t = " + as_text(state.t) +
+      run.scene.unit(Quantity::time) + "): '" + checkpoints.path(state.n) + "'";
     if (!stops)
       {
         // Regular ones need no words.
         if (!decision.is_due)
-          console.stream() << "Checkpoint of " << text.str() << std::endl;
+          console.stream() << "Checkpoint of " << text << std::endl;
         return "";
       }
-    std::ostringstream error;
+    std::string interruption = stop +
+                               " has ended the run after the checkpoint of " +
+                               text + "; --restart goes on.";
     if (const auto relative = run.recorder.relative_error(run.accepted.errors))
-      error << " The error "
-            << (run.scene.quantity ?
-                  "of " + run.scene.names.quantity(run.scene.quantity->name) :
-                  "in the energy norm")
-            << " up to there is estimated as " << std::setprecision(2)
-            << 100. * *relative << " %.";
-    const std::string interruption = stop +
-                                     " has ended the run after the checkpoint "
-                                     "of " +
-                                     text.str() + "; --restart goes on." +
-                                     error.str();
+      interruption +=
+        " The error " +
+        (run.scene.quantity ?
+           "of " + run.scene.names.quantity(run.scene.quantity->name) :
+           "in the energy norm") +
+        " up to there is estimated as " + number(100. * *relative, 2) + " %.";
     console.log() << interruption << std::endl;
     return interruption;
   }

@@ -52,12 +52,9 @@ namespace Viscoplastic
                              std::ostream              &out)
     {
       const Scene<dim> &scene = discretization.scene();
-      if (std::none_of(scene.materials.begin(),
-                       scene.materials.end(),
-                       [](const auto &material) {
-                         return material->law != nullptr &&
-                                !std::isfinite(material->added_at);
-                       }))
+      if (!scene.on_any_material([](const auto &material) {
+            return material.law && !std::isfinite(material.added_at);
+          }))
         return;
       const double rate =
         evaluate_flow(discretization.laws, initial, initial.t).relaxation_rate;
@@ -87,10 +84,9 @@ namespace Viscoplastic
       const unsigned int  per_phase = std::max(1u, 100u / schedule.n_phases());
       DistributedVector   u         = discretization.space.owned_vector();
       double              t_old     = 0.;
-      while (t_old < schedule.end_time())
+      for (const TimeSchedule::Phase &phase : schedule.phases)
         {
-          const TimeSchedule::Phase &phase = schedule.phase_at(t_old);
-          const unsigned int n_steps       = std::min(phase.n_steps, per_phase),
+          const unsigned int n_steps = std::min(phase.n_steps, per_phase),
                              n = n_steps * ((per_phase - 1) / n_steps + 1);
           for (unsigned int i = 1; i <= n; ++i)
             {
@@ -168,10 +164,10 @@ namespace Viscoplastic
   {
     make_mesh(scene.parameters.geometry, triangulation);
     scene.inspect(triangulation);
-    AssertThrow(!control.is_on || !scene.has_viscosity() ||
-                  scene.parameters.error_control.error_estimator,
-                ExcMessage("'Step control/Tolerance' needs an estimate of the "
-                           "error; set 'Error control/Error bar' = true."));
+    require(!control.is_on || !scene.has_viscosity() ||
+              scene.parameters.error_control.error_estimator,
+            "'Step control/Tolerance' needs an estimate of the error; set "
+            "'Error control/Error bar' = true.");
     control.set_has_estimate(scene.has_viscosity());
     if (announcer != nullptr)
       announcer->announce(scene);
@@ -204,7 +200,6 @@ namespace Viscoplastic
                       State<dim>                &initial,
                       const Load<dim>           &load)
   {
-    const Scene<dim>                 &scene     = discretization.scene();
     constexpr double                  tolerance = 1e-6;
     const CompatibilityViolation<dim> violation =
       compatibility_violation(discretization.space,
@@ -213,23 +208,22 @@ namespace Viscoplastic
                               initial.u,
                               initial.contact);
     // Data that a solution makes are compatible up to quadrature.
-    if (scene.exact_solution && scene.exact_solution->makes_data)
+    const auto &solution = discretization.scene().exact_solution;
+    if (solution && solution->makes_data)
       return;
-    std::ostringstream message;
-    message << "The initial data are not in equilibrium with the loads at "
-               "t = 0, (2.12): the relative violation is "
-            << violation.relative << ", more than " << tolerance
-            << "; it is largest ";
-    if (violation.is_axial)
-      message << "in 'Loads/Axial force'";
-    else
-      message << "at x = (" << violation.position << "), "
-              << (violation.boundaries.empty() ?
-                    "inside of the body" :
-                    "on boundary " + list(violation.boundaries));
-    message << "; start with loads that the initial stress balances, or set "
-               "'Initial state/Equilibrate'.";
-    AssertThrow(violation.relative <= tolerance, ExcMessage(message.str()));
+    require(violation.relative <= tolerance,
+            "The initial data are not in equilibrium with the loads at t = 0, "
+            "(2.12): the relative violation is " +
+              as_text(violation.relative) + ", more than " +
+              as_text(tolerance) + "; it is largest " +
+              (violation.is_axial ?
+                 "in 'Loads/Axial force'" :
+                 "at x = (" + as_text(violation.position) + "), " +
+                   (violation.boundaries.empty() ?
+                      "inside of the body" :
+                      "on boundary " + list(violation.boundaries))) +
+              "; start with loads that the initial stress balances, or set "
+              "'Initial state/Equilibrate'.");
   }
 
 
@@ -263,16 +257,12 @@ namespace Viscoplastic
       return;
     const TimeStep largest = scene.schedule.largest_step();
     if (!is_stable(*initial.rate, largest.k))
-      {
-        std::ostringstream message;
-        message << "Warning: the time step " << largest.k << time_unit
-                << " of step " << largest.n << " (t = " << largest.t
-                << time_unit
-                << ") exceeds this limit; the run will end there unless the "
-                   "limit has grown by then. Take more steps in "
-                   "'Time/Phases', or set 'Time/Scheme' = backward Euler.";
-        console.remark(message.str());
-      }
+      console.remark("Warning: the time step " + as_text(largest.k) +
+                     time_unit + " of step " + std::to_string(largest.n) +
+                     " (t = " + as_text(largest.t) + time_unit +
+                     ") exceeds this limit; the run will end there unless the "
+                     "limit has grown by then. Take more steps in "
+                     "'Time/Phases', or set 'Time/Scheme' = backward Euler.");
   }
 
 

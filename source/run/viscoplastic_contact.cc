@@ -8,7 +8,6 @@
 #include <viscoplastic_contact/run/state_carrier.h>
 #include <viscoplastic_contact/run/viscoplastic_contact.h>
 
-#include <iomanip>
 
 namespace Viscoplastic
 {
@@ -369,13 +368,11 @@ namespace Viscoplastic
     else
       change_mesh();
     control.repeat();
-    std::ostringstream text;
-    text << "  mesh " << std::setprecision(3);
+    out << "  mesh ";
     if (mesh_controller.excess() >= 1.005)
-      text << mesh_controller.excess() << " times ";
-    text << "too coarse for step " << step.time_step.n << ", refined to "
-         << triangulation.n_global_active_cells() << " cells\n";
-    out << text.str() << std::flush;
+      out << number(mesh_controller.excess(), 3) << " times ";
+    out << "too coarse for step " << step.time_step.n << ", refined to "
+        << triangulation.n_global_active_cells() << " cells" << std::endl;
     return true;
   }
 

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <viscoplastic_contact/base/messages.h>
 #include <viscoplastic_contact/scene/boundary_condition.h>
-
-#include <sstream>
 
 // The data of a boundary condition at places and times.
 
@@ -9,22 +8,19 @@ namespace Viscoplastic
 {
   namespace
   {
-    /// The value of an entry at a place, whose description comes in parts.
-    template <typename... Place>
+    /// The value of a datum at a slip rate, or a place (and time).
+    template <int dim>
     double
-    not_negative(const double             value,
-                 const types::boundary_id id,
-                 const std::string       &name,
-                 const Place &...place)
+    not_negative(const Expression<dim>       &datum,
+                 const Point<dim>            &x,
+                 const std::optional<double> &t = {})
     {
+      const double value = datum.value(x, t.value_or(0.));
       if (!(value >= 0.))
-        {
-          std::ostringstream message;
-          message << "'Boundary " << id << '/' << name << "' is " << value
-                  << " at ";
-          (message << ... << place) << "; it must not be negative.";
-          AssertThrow(false, ExcMessage(message.str()));
-        }
+        refuse("'" + datum.name_of_entry() + "' is " + as_text(value) + " at " +
+               (dim == 1 ? "v = " + as_text(x) : "x = (" + as_text(x) + ")") +
+               (t ? ", t = " + as_text(*t) : "") +
+               "; it must not be negative.");
       return value;
     }
   } // namespace
@@ -62,15 +58,8 @@ namespace Viscoplastic
   {
     double sum = 0.;
     for (unsigned int i = 0; i < friction_data.size(); ++i)
-      if (const LawEntry &entry = friction_law->entries[i];
-          entry.of_pressure == of_pressure)
-        sum += not_negative(friction_data[i].value(x, t),
-                            id,
-                            entry.name,
-                            "x = (",
-                            x,
-                            "), t = ",
-                            t);
+      if (friction_law->entries[i].of_pressure == of_pressure)
+        sum += not_negative(friction_data[i], x, t);
     return sum;
   }
 
@@ -80,13 +69,9 @@ namespace Viscoplastic
   double
   BoundaryCondition<dim>::bound_factor(const double slip_rate) const
   {
-    if (!slip_rate_factor)
-      return 1.;
-    return not_negative(slip_rate_factor->value(Point<1>(slip_rate), 0.),
-                        id,
-                        "Slip rate factor",
-                        "v = ",
-                        slip_rate);
+    return slip_rate_factor ?
+             not_negative(*slip_rate_factor, Point<1>(slip_rate)) :
+             1.;
   }
 
 
@@ -95,12 +80,7 @@ namespace Viscoplastic
   double
   BoundaryCondition<dim>::compliance(const Point<dim> &x) const
   {
-    return not_negative(given_compliance->value(x, 0.),
-                        id,
-                        contact_law->entries.front().name,
-                        "x = (",
-                        x,
-                        ")");
+    return not_negative(*given_compliance, x);
   }
 
 
@@ -154,14 +134,11 @@ namespace Viscoplastic
     const Point<dim>     &x,
     const Tensor<1, dim> &outward_normal) const
   {
-    const auto value = [&](const std::optional<Expression<dim>> &datum,
-                           const std::string                    &name) {
-      return datum ?
-               not_negative(datum->value(x, 0.), id, name, "x = (", x, ")") :
-               0.;
-    };
-    const double k_n = value(normal_stiffness, "Normal stiffness"),
-                 k_t = value(tangential_stiffness, "Tangential stiffness");
+    const double k_n =
+                   normal_stiffness ? not_negative(*normal_stiffness, x) : 0.,
+                 k_t = tangential_stiffness ?
+                         not_negative(*tangential_stiffness, x) :
+                         0.;
     return k_t * unit_symmetric_tensor<dim>() +
            (k_n - k_t) *
              symmetrize(outer_product(outward_normal, outward_normal));

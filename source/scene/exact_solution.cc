@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <viscoplastic_contact/base/messages.h>
 #include <viscoplastic_contact/mesh/plane_model.h>
 #include <viscoplastic_contact/scene/exact_solution.h>
 
-#include <sstream>
 
 namespace Viscoplastic
 {
@@ -37,17 +37,16 @@ namespace Viscoplastic
     , space_step(relative_step)
     , time_step(relative_step * end_time)
   {
-    AssertThrow(!Utilities::trim(parameters.displacement).empty(),
-                ExcMessage("'Exact solution/Displacement' is missing, but "
-                           "other entries of that section are given."));
+    require(!Utilities::trim(parameters.displacement).empty(),
+            "'Exact solution/Displacement' is missing, but other entries of "
+            "that section are given.");
     given_displacement.emplace(parameters.displacement,
                                dim + (is_generalized() ? 1 : 0),
                                "Exact solution/Displacement");
-    AssertThrow(!is_generalized() ||
-                  !(*given_displacement)[dim].depends_on_position(),
-                ExcMessage("The last component of 'Exact solution/"
-                           "Displacement', eps_zz, depends on the place, but "
-                           "it is one for the whole section."));
+    require(!is_generalized() ||
+              !(*given_displacement)[dim].depends_on_position(),
+            "The last component of 'Exact solution/Displacement', eps_zz, "
+            "depends on the place, but it is one for the whole section.");
     if (!Utilities::trim(parameters.stress).empty())
       given_stress.emplace(parameters.stress,
                            stress_components<dim>().size(),
@@ -62,10 +61,10 @@ namespace Viscoplastic
   {
     space_step = relative_step * size;
     material   = has_own_stress() ? nullptr : elastic;
-    AssertThrow(!makes_data || has_stress(),
-                ExcMessage("'Exact solution/Stress' is missing; only for a "
-                           "body of one elastic material without thermal "
-                           "expansion it follows from the displacement."));
+    require(
+      !makes_data || has_stress(),
+      "'Exact solution/Stress' is missing; only for a body of one elastic "
+      "material without thermal expansion it follows from the displacement.");
   }
 
 
@@ -217,7 +216,7 @@ namespace Viscoplastic
   void
   ExactSolution<dim>::check_rates(const Point<dim> &x, const double t) const
   {
-    const auto refuse_growth = [&](const auto &name, const auto &f) {
+    const auto refuse_growth = [&](const std::string &name, const auto &f) {
       // Towards a vertical tangent, as of sqrt(t), differences grow with
       // smaller steps; those of a smooth function converge.
       const auto difference = [&](const double step) {
@@ -225,15 +224,13 @@ namespace Viscoplastic
       };
       const double coarse = difference(16. * time_step),
                    fine   = difference(time_step);
-      std::ostringstream message;
-      message << "'Exact solution/" << name
-              << "' has no time derivative at x = (" << x << "), t = " << t
-              << ": its differences over shorter and shorter times grow "
-                 "without bound.";
       // By 2 for a square root; by 16^0.1 for t^0.9.
-      AssertThrow(!(fine > 1.3 * coarse &&
-                    difference(time_step / 16.) > 1.3 * fine),
-                  ExcMessage(message.str()));
+      require(!(fine > 1.3 * coarse &&
+                difference(time_step / 16.) > 1.3 * fine),
+              "'Exact solution/" + name + "' has no time derivative at x = (" +
+                as_text(x) + "), t = " + as_text(t) +
+                ": its differences over shorter and shorter times grow "
+                "without bound.");
     };
     refuse_growth("Displacement",
                   [&](const double s) { return displacement(x, s); });

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <viscoplastic_contact/base/messages.h>
 #include <viscoplastic_contact/scene/jump_in_time.h>
 #include <viscoplastic_contact/scene/kinks_in_time.h>
 #include <viscoplastic_contact/scene/sample_places.h>
-
-#include <sstream>
 
 namespace Viscoplastic
 {
@@ -33,11 +32,10 @@ namespace Viscoplastic
       const unsigned int n =
         std::max(1u, n_steps_sampled / schedule.n_phases());
       std::vector<StepEnds> steps;
-      for (double t = 0.; t < schedule.end_time(); t = steps.back().end)
+      for (const TimeSchedule::Phase &phase : schedule.phases)
         {
-          const TimeSchedule::Phase &phase  = schedule.phase_at(t);
-          const unsigned int         stride = (phase.n_steps + n - 1) / n;
-          const auto                 time   = [&](const unsigned int i) {
+          const unsigned int stride = (phase.n_steps + n - 1) / n;
+          const auto         time   = [&](const unsigned int i) {
             return phase.start + (phase.end - phase.start) * i / phase.n_steps;
           };
           for (unsigned int i = 0; i < phase.n_steps; i += stride)
@@ -51,14 +49,6 @@ namespace Viscoplastic
 
 
 
-    double
-    sum_of_sizes(const std::vector<double> &values)
-    {
-      double sum = 0.;
-      for (const double value : values)
-        sum += std::fabs(value);
-      return sum;
-    }
   } // namespace
 
 
@@ -77,12 +67,14 @@ namespace Viscoplastic
       std::vector<double> values = values_at(datum, places, t);
       if (least.empty())
         least = most = values;
+      double sum = 0.;
       for (std::size_t i = 0; i < values.size(); ++i)
         {
           least[i] = std::min(least[i], values[i]);
           most[i]  = std::max(most[i], values[i]);
+          sum += std::fabs(values[i]);
         }
-      size = std::max(size, sum_of_sizes(values));
+      size = std::max(size, sum);
       return values;
     };
     double largest = 0., time = 0.;
@@ -185,9 +177,8 @@ namespace Viscoplastic
       {
         if (!t || !entries.insert(entry).second)
           return;
-        std::ostringstream text;
-        text << (list.empty() ? "'" : ", '") << entry << "' at t = " << *t;
-        list += text.str();
+        list +=
+          (list.empty() ? "'" : ", '") + entry + "' at t = " + as_text(*t);
       }
     };
     Finding jumps, unseen;

@@ -53,9 +53,8 @@ namespace Viscoplastic
         std::vector<double> times{0.};
         const unsigned int  n =
           std::max(least_windows, n_windows / schedule.n_phases());
-        while (times.back() < end_time)
+        for (const TimeSchedule::Phase &phase : schedule.phases)
           {
-            const TimeSchedule::Phase &phase = schedule.phase_at(times.back());
             for (unsigned int i = 1; i < n; ++i)
               times.push_back(phase.start + i * (phase.end - phase.start) / n);
             times.push_back(phase.end);

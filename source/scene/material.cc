@@ -6,7 +6,6 @@
 #include <viscoplastic_contact/scene/material.h>
 
 #include <limits>
-#include <sstream>
 
 namespace Viscoplastic
 {
@@ -17,45 +16,40 @@ namespace Viscoplastic
                       const std::string &entry,
                       const unsigned int dim)
     {
-      const auto refuse = [&entry](const std::string &why) {
-        AssertThrow(false, ExcMessage("'" + entry + "': " + why));
-      };
-
+      const std::string  where = "'" + entry + "': ";
       FullMatrix<double> matrix(6, 6);
       const auto         rows = Utilities::split_string_list(text, ';');
-      if (rows.size() != 6)
-        refuse("there must be 6 rows separated by semicolons, not " +
-               std::to_string(rows.size()) + ".");
+      require(rows.size() == 6,
+              where + "there must be 6 rows separated by semicolons, not " +
+                std::to_string(rows.size()) + ".");
       for (unsigned int i = 0; i < 6; ++i)
         {
           const auto numbers = Utilities::split_string_list(rows[i], ',');
-          if (numbers.size() != 6)
-            refuse("row " + std::to_string(i + 1) +
-                   " must have 6 numbers separated by commas, not " +
-                   std::to_string(numbers.size()) + ".");
+          require(numbers.size() == 6,
+                  where + "row " + std::to_string(i + 1) +
+                    " must have 6 numbers separated by commas, not " +
+                    std::to_string(numbers.size()) + ".");
           for (unsigned int j = 0; j < 6; ++j)
-            try
-              {
-                matrix(i, j) = Utilities::string_to_double(numbers[j]);
-              }
-            catch (const std::exception &)
-              {
-                refuse("'" + numbers[j] + "' in row " + std::to_string(i + 1) +
-                       " is not a number.");
-              }
+            {
+              const auto number = number_of(numbers[j]);
+              require(number,
+                      where + "'" + numbers[j] + "' in row " +
+                        std::to_string(i + 1) + " is not a number.");
+              matrix(i, j) = *number;
+            }
         }
 
       // Columns and rows 4 and 5 are yz and xz.
       if (dim == 2)
         for (const unsigned int in_plane : {0, 1, 2, 5})
           for (const unsigned int out_of_plane : {3, 4})
-            if (matrix(in_plane, out_of_plane) != 0. ||
-                matrix(out_of_plane, in_plane) != 0.)
-              refuse(
-                "the entry in row " + std::to_string(in_plane + 1) +
-                ", column " + std::to_string(out_of_plane + 1) +
-                " couples deformations in the plane with shear out of it; it "
-                "must be zero in plane strain (2D), or the scene be 3D.");
+            require(matrix(in_plane, out_of_plane) == 0. &&
+                      matrix(out_of_plane, in_plane) == 0.,
+                    where + "the entry in row " + std::to_string(in_plane + 1) +
+                      ", column " + std::to_string(out_of_plane + 1) +
+                      " couples deformations in the plane with shear out of "
+                      "it; it must be zero in plane strain (2D), or the scene "
+                      "be 3D.");
 
       try
         {
@@ -63,9 +57,8 @@ namespace Viscoplastic
         }
       catch (const std::exception &exception)
         {
-          refuse(reason(exception));
+          refuse(where + reason(exception));
         }
-      return Stiffness::isotropic(1., 0.); // not reached
     }
 
 
@@ -77,17 +70,11 @@ namespace Viscoplastic
     {
       if (Utilities::trim(text).empty())
         return otherwise;
-      double t = 0.;
-      try
-        {
-          t = Utilities::string_to_double(text);
-        }
-      catch (const std::exception &)
-        {}
-      AssertThrow(t > 0. && std::isfinite(t),
-                  ExcMessage("'" + entry + "' = " + text +
-                             " is not a time after the beginning."));
-      return t;
+      const auto t = number_of(text);
+      require(t && *t > 0. && std::isfinite(*t),
+              "'" + entry + "' = " + text +
+                " is not a time after the beginning.");
+      return *t;
     }
 
 
@@ -104,16 +91,15 @@ namespace Viscoplastic
         return std::numeric_limits<double>::infinity();
       if (const auto given = optional_positive_number(text, entry))
         return *given;
-      AssertThrow(temperature.reference,
-                  ExcMessage("'" + section +
-                             "/Activation energy' needs the temperature for "
-                             "which the entries of the law hold: give '" +
-                             entry +
-                             "', or 'Temperature/Reference temperature'."));
-      AssertThrow(*temperature.reference > 0.,
-                  ExcMessage("'Temperature/Reference temperature' is no "
-                             "absolute temperature, as '" +
-                             section + "/Activation energy' needs it."));
+      require(temperature.reference,
+              "'" + section +
+                "/Activation energy' needs the temperature for which the "
+                "entries of the law hold: give '" +
+                entry + "', or 'Temperature/Reference temperature'.");
+      require(
+        *temperature.reference > 0.,
+        "'Temperature/Reference temperature' is no absolute temperature, as '" +
+          section + "/Activation energy' needs it.");
       return *temperature.reference;
     }
 
@@ -135,19 +121,17 @@ namespace Viscoplastic
       }();
       if (!law)
         return law;
-      AssertThrow(temperature || !law->depends_on_temperature(),
-                  ExcMessage("'" + section + "/" + name +
-                             "' is a law of the temperature T, but the scene "
-                             "has none: give 'Temperature/Value'."));
+      require(temperature || !law->depends_on_temperature(),
+              "'" + section + "/" + name +
+                "' is a law of the temperature T, but the scene has none: give "
+                "'Temperature/Value'.");
       const std::string entry  = section + "/Activation energy";
       const auto        energy = Utilities::trim(parameters.activation_energy);
       if (energy.empty() || energy == "0")
         return law;
       const double Q = *optional_positive_number(energy, entry);
-      AssertThrow(temperature,
-                  ExcMessage("'" + entry +
-                             "' needs a temperature: give "
-                             "'Temperature/Value'."));
+      require(temperature,
+              "'" + entry + "' needs a temperature: give 'Temperature/Value'.");
       return thermally_activated(std::move(law),
                                  Q / temperature->gas_constant,
                                  law_temperature(section,
@@ -182,33 +166,28 @@ namespace Viscoplastic
       {
         thermal_expansion.emplace(parameters.thermal_expansion,
                                   expansion_entry);
-        AssertThrow(!thermal_expansion->depends_on_time(),
-                    ExcMessage("'" + expansion_entry +
-                               "' depends on t; it must be a function of "
-                               "position only."));
-        AssertThrow(temperature || thermal_expansion->is_zero(),
-                    ExcMessage("'" + expansion_entry +
-                               "' needs a temperature: give "
-                               "'Temperature/Value'."));
+        require(!thermal_expansion->depends_on_time(),
+                "'" + expansion_entry +
+                  "' depends on t; it must be a function of position only.");
+        require(temperature || thermal_expansion->is_zero(),
+                "'" + expansion_entry +
+                  "' needs a temperature: give 'Temperature/Value'.");
         if (thermal_expansion->is_zero())
           thermal_expansion.reset();
       }
-    AssertThrow(added_at < removed_at,
-                ExcMessage(
-                  "'" + section + "/Removed at' = " + parameters.removed_at +
-                  " is not later than 'Added at' = " + parameters.added_at +
-                  "."));
+    require(added_at < removed_at,
+            "'" + section + "/Removed at' = " + parameters.removed_at +
+              " is not later than 'Added at' = " + parameters.added_at + ".");
     if (!parameters.voigt_matrix.empty())
       {
         // What the file gives is used, or refused; the defaults alone go with
         // a matrix, since complete parameter files hold them.
         const MaterialParameters defaults;
-        AssertThrow(parameters.youngs_modulus == defaults.youngs_modulus &&
-                      parameters.poissons_ratio == defaults.poissons_ratio,
-                    ExcMessage("'" + section +
-                               "' has a `Voigt matrix' and Young's modulus or "
-                               "Poisson's ratio; give either the matrix or "
-                               "these."));
+        require(parameters.youngs_modulus == defaults.youngs_modulus &&
+                  parameters.poissons_ratio == defaults.poissons_ratio,
+                "'" + section +
+                  "' has a `Voigt matrix' and Young's modulus or Poisson's "
+                  "ratio; give either the matrix or these.");
         anisotropic = read_voigt_matrix(parameters.voigt_matrix,
                                         section + "/Voigt matrix",
                                         dim);
@@ -222,10 +201,10 @@ namespace Viscoplastic
     for (const auto &[expression, entry] :
          {std::make_pair(&*youngs_modulus, "Young's modulus"),
           std::make_pair(&*poissons_ratio, "Poisson's ratio")})
-      AssertThrow(!expression->depends_on_time(),
-                  ExcMessage("'" + section + "/" + entry +
-                             "' depends on t; elastic moduli must be functions "
-                             "of position only."));
+      require(
+        !expression->depends_on_time(),
+        "'" + section + "/" + entry +
+          "' depends on t; elastic moduli must be functions of position only.");
     if (is_uniform())
       stiffness(Point<dim>());
   }
@@ -251,31 +230,23 @@ namespace Viscoplastic
   Stiffness
   Material<dim>::isotropic(const Point<dim> &x) const
   {
-    const auto refuse = [&](const std::string     &entry,
-                            const Expression<dim> &expression,
-                            const double           value,
-                            const std::string     &allowed) {
-      std::ostringstream message;
-      message << "'" << section << "/" << entry << "' is " << value;
-      if (expression.depends_on_position())
-        message << " at x = (" << x << ")";
-      message << "; it must be " << allowed << ".";
-      AssertThrow(false, ExcMessage(message.str()));
+    const auto is = [&](const Expression<dim> &expression, const double value) {
+      return "'" + expression.name_of_entry() + "' is " + as_text(value) +
+             (expression.depends_on_position() ?
+                " at x = (" + as_text(x) + ")" :
+                "") +
+             "; it must be ";
     };
     const double E  = youngs_modulus->value(x, 0.);
     const double nu = poissons_ratio->value(x, 0.);
     if (!(E > 0))
-      refuse("Young's modulus", *youngs_modulus, E, "positive");
-    AssertThrow(E >= least_modulus && E <= largest_modulus,
-                ExcMessage(out_of_range("'" + section + "/Young's modulus'",
-                                        E,
-                                        least_modulus,
-                                        largest_modulus)));
+      refuse(is(*youngs_modulus, E) + "positive.");
+    require_in_range("'" + section + "/Young's modulus'",
+                     E,
+                     least_modulus,
+                     largest_modulus);
     if (!(nu > -1 && nu < 0.5))
-      refuse("Poisson's ratio",
-             *poissons_ratio,
-             nu,
-             "larger than -1 and smaller than 0.5");
+      refuse(is(*poissons_ratio, nu) + "larger than -1 and smaller than 0.5.");
     return Stiffness::isotropic(E, nu);
   }
 

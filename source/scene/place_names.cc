@@ -24,9 +24,9 @@ namespace Viscoplastic
     check_name(const std::string &name, const std::string &entry)
     {
       const auto require = [&](const bool condition, const std::string &why) {
-        AssertThrow(condition,
-                    ExcMessage("'" + entry + "': the name '" + excerpt(name) +
-                               "' " + why));
+        Viscoplastic::require(condition,
+                              "'" + entry + "': the name '" + excerpt(name) +
+                                "' " + why);
       };
       require(name.size() <= longest_name,
               "is too long; at most " + std::to_string(longest_name) +
@@ -69,10 +69,9 @@ namespace Viscoplastic
         return;
       check_name(name, entry);
       for (const auto &[other, taken] : names)
-        AssertThrow(taken != name,
-                    ExcMessage("'" + entry + "' is '" + excerpt(name) +
-                               "', which " + other.text() +
-                               " is called already; take another name."));
+        require(taken != name,
+                "'" + entry + "' is '" + excerpt(name) + "', which " +
+                  other.text() + " is called already; take another name.");
       names[place] = name;
     };
     for (const auto &[id, boundary] : parameters.boundaries)
@@ -111,11 +110,10 @@ namespace Viscoplastic
         if (names.count(place) == 1)
           continue;
         for (const auto &[other, taken] : given)
-          AssertThrow(taken != name,
-                      ExcMessage("The scene calls " + other.text() + " '" +
-                                 excerpt(name) + "', as '" + geometry.file +
-                                 "' calls " + place.text() +
-                                 "; take another name."));
+          require(taken != name,
+                  "The scene calls " + other.text() + " '" + excerpt(name) +
+                    "', as '" + geometry.file + "' calls " + place.text() +
+                    "; take another name.");
         if (!find(name))
           try
             {
@@ -163,12 +161,9 @@ namespace Viscoplastic
         for (const auto &[other, taken] : names)
           if (other.kind == kind)
             known.push_back(taken);
-        const std::string near = nearest_name(name, known);
-        AssertThrow(false,
-                    ExcMessage(
-                      "'Error control/Quantity' = '" + excerpt(quantity) +
-                      "': there is no " + kind + " '" + excerpt(name) + "'" +
-                      (near.empty() ? "." : "; did you mean '" + near + "'?")));
+        refuse("'Error control/Quantity' = '" + excerpt(quantity) +
+               "': there is no " + kind + " '" + excerpt(name) + "'" +
+               did_you_mean(name, known));
       }
     return (kind == "boundary" ? what + '_' : kind) +
            std::to_string(place->number) + '_' + component;

@@ -78,15 +78,11 @@ namespace Viscoplastic
           return quantity;
         text += (text.empty() ? "" : ", ") + names.quantity(quantity.name);
       }
-    AssertThrow(false,
-                ExcMessage("'Error control/Quantity': '" +
-                           excerpt(names.quantity(column)) +
-                           "' is none of the quantities of this scene whose "
-                           "error can be estimated: " +
-                           (text.empty() ? "there are none; give 'Output/"
-                                           "Points'" :
-                                           text) +
-                           "."));
+    refuse("'Error control/Quantity': '" + excerpt(names.quantity(column)) +
+           "' is none of the quantities of this scene whose error can be "
+           "estimated: " +
+           (text.empty() ? "there are none; give 'Output/Points'" : text) +
+           ".");
     return {};
   }
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <viscoplastic_contact/base/messages.h>
 #include <viscoplastic_contact/base/types.h>
 #include <viscoplastic_contact/scene/scene.h>
 
 #include <cmath>
-#include <sstream>
 
 // What a scene has, in words for the user.
 
@@ -125,20 +125,20 @@ namespace Viscoplastic
     for (const auto &[id, entry] : entries)
       {
         const Material<dim> &material = *entry.material;
-        std::ostringstream   stages;
+        std::string          stages;
         if (std::isfinite(material.added_at))
-          stages << " added at t = " << material.added_at << time_unit;
+          stages = " added at t = " + as_text(material.added_at) + time_unit;
         if (std::isfinite(material.removed_at))
-          stages << (stages.str().empty() ? "" : " and")
-                 << " removed at t = " << material.removed_at << time_unit;
-        if (!stages.str().empty())
-          result.push_back(material.name + stages.str());
+          stages += (stages.empty() ? "" : " and") +
+                    (" removed at t = " + as_text(material.removed_at)) +
+                    time_unit;
+        if (!stages.empty())
+          result.push_back(material.name + stages);
       }
-    std::ostringstream tolerance;
-    tolerance << "meshes and steps for an error of "
-              << 100. * parameters.error_control.tolerance << " %";
     if (parameters.error_control.has_tolerance())
-      result.push_back(tolerance.str());
+      result.push_back("meshes and steps for an error of " +
+                       as_text(100. * parameters.error_control.tolerance) +
+                       " %");
     else if (is_adaptive())
       result.push_back("adaptive mesh (" +
                        name_of(parameters.refinement.strategy) + " estimator)");

@@ -11,7 +11,6 @@
 
 #include <algorithm>
 #include <limits>
-#include <sstream>
 
 // What a scene learns from its mesh, and what is wrong with the two together.
 
@@ -23,6 +22,9 @@ namespace Viscoplastic
     const parallel::distributed::Triangulation<dim> &triangulation)
   {
     warnings.clear();
+    const auto warn = [this](const std::vector<std::string> &sentences) {
+      warnings.insert(warnings.end(), sentences.begin(), sentences.end());
+    };
     if (!has_contact_pairs())
       check_connection(triangulation);
     inspect_boundary_ids(boundary_ids(triangulation));
@@ -33,17 +35,12 @@ namespace Viscoplastic
     inspect_junctions(triangulation);
     if (has_contact_pairs())
       inspect_contact_pairs(triangulation);
-    for (const std::string &warning :
-         place_supports(triangulation, boundary, supports))
-      warnings.push_back(warning);
-    for (const std::string &warning :
-         warnings_of_data_in_time(*this, triangulation))
-      warnings.push_back(warning);
+    warn(place_supports(triangulation, boundary, supports));
+    warn(warnings_of_data_in_time(*this, triangulation));
     make_materials(material_ids(triangulation));
     inspect_temperature(triangulation);
     find_stages(triangulation);
-    for (const std::string &warning : check_output_places(*this, triangulation))
-      warnings.push_back(warning);
+    warn(check_output_places(*this, triangulation));
     if (exact_solution)
       {
         const bool is_elastic =
@@ -63,24 +60,22 @@ namespace Viscoplastic
     const std::set<types::boundary_id> &ids) const
   {
     for (const types::boundary_id id : ids)
-      AssertThrow(boundary.count(id) == 1,
-                  ExcMessage("Boundary id " + std::to_string(id) +
-                             " of the mesh has no role; add `subsection "
-                             "Boundary " +
-                             std::to_string(id) +
-                             "' with a role (free, if it carries no load). "
-                             "The mesh has the ids " +
-                             list(ids) +
-                             (id == 0 && !parameters.geometry.file.empty() ?
-                                "; faces that the file puts into no group "
-                                "have the id 0." :
-                                ".")));
+      require(
+        boundary.count(id) == 1,
+        "Boundary id " + std::to_string(id) +
+          " of the mesh has no role; add `subsection Boundary " +
+          std::to_string(id) +
+          "' with a role (free, if it carries no load). The mesh has the ids " +
+          list(ids) +
+          (id == 0 && !parameters.geometry.file.empty() ?
+             "; faces that the file puts into no group have the id 0." :
+             "."));
     for (const auto &pair : boundary)
-      AssertThrow(ids.count(pair.first) == 1,
-                  ExcMessage("'Boundary " + std::to_string(pair.first) +
-                             "' has a role, but the mesh has no such boundary "
-                             "id; it has the ids " +
-                             list(ids) + "."));
+      require(ids.count(pair.first) == 1,
+              "'Boundary " + std::to_string(pair.first) +
+                "' has a role, but the mesh has no such boundary id; it has "
+                "the ids " +
+                list(ids) + ".");
   }
 
 
@@ -97,12 +92,10 @@ namespace Viscoplastic
         for (const unsigned int v : cell->vertex_indices())
           least = std::min(least, cell->vertex(v)[0] / cell->diameter());
     least = Utilities::MPI::min(least, triangulation.get_communicator());
-    AssertThrow(least > -1e-9,
-                ExcMessage("The mesh crosses the axis: some of it has x = r < "
-                           "0, but with " +
-                           model +
-                           " it is the section of a body of revolution on one "
-                           "side of x = 0."));
+    require(
+      least > -1e-9,
+      "The mesh crosses the axis: some of it has x = r < 0, but with " + model +
+        " it is the section of a body of revolution on one side of x = 0.");
 
     // On the coarse mesh, which all ranks know.
     std::set<unsigned int> on_axis, held;
@@ -117,23 +110,22 @@ namespace Viscoplastic
             {
               const auto &condition = boundary.at(face->boundary_id());
               const auto &radial    = condition.displacement[0];
-              AssertThrow(condition.role == BoundaryRole::symmetry ||
-                            condition.role == BoundaryRole::clamped ||
-                            (radial && radial->is_zero()),
-                          ExcMessage(
-                            "Boundary " + std::to_string(condition.id) +
-                            " lies on the axis of a body of revolution, where "
-                            "u_r = 0; give it the role symmetry, or a "
-                            "displacement whose first component is 0."));
+              require(condition.role == BoundaryRole::symmetry ||
+                        condition.role == BoundaryRole::clamped ||
+                        (radial && radial->is_zero()),
+                      "Boundary " + std::to_string(condition.id) +
+                        " lies on the axis of a body of revolution, where u_r "
+                        "= 0; give it the role symmetry, or a displacement "
+                        "whose first component is 0.");
               for (const unsigned int v : face->vertex_indices())
                 held.insert(face->vertex_index(v));
             }
       }
     for (const unsigned int vertex : on_axis)
-      AssertThrow(held.count(vertex) == 1,
-                  ExcMessage("The mesh touches the axis of revolution in a "
-                             "single node, which nothing holds there; let a "
-                             "boundary lie on the axis, or none of it."));
+      require(
+        held.count(vertex) == 1,
+        "The mesh touches the axis of revolution in a single node, which "
+        "nothing holds there; let a boundary lie on the axis, or none of it.");
   }
 
 
@@ -172,15 +164,14 @@ namespace Viscoplastic
   {
     if (angle <= 30.)
       return;
-    std::ostringstream message;
-    message << "The faces of boundary " << id
-            << ", which is in contact with another body, meet at an angle of "
-            << angle
-            << " degrees, and normals at their nodes are means of theirs: "
-               "give the parts beside an edge boundary ids of their own, and a "
-               "curve more cells.";
-    AssertThrow(angle <= 60., ExcMessage(message.str()));
-    warnings.push_back(message.str());
+    const std::string sentence =
+      "The faces of boundary " + std::to_string(id) +
+      ", which is in contact with another body, meet at an angle of " +
+      as_text(angle) +
+      " degrees, and normals at their nodes are means of theirs: give the "
+      "parts beside an edge boundary ids of their own, and a curve more cells.";
+    require(angle <= 60., sentence);
+    warnings.push_back(sentence);
   }
 
 
@@ -198,11 +189,10 @@ namespace Viscoplastic
           const PieceNormal<dim> piece = piece_normal(triangulation, id);
           if (condition.normal_is_given)
             {
-              AssertThrow(faces_towards(triangulation, id, condition.normal),
-                          ExcMessage(
-                            "'Boundary " + std::to_string(id) +
-                            "/Foundation normal' points into the body; it "
-                            "goes from the body into the foundation."));
+              require(faces_towards(triangulation, id, condition.normal),
+                      "'Boundary " + std::to_string(id) +
+                        "/Foundation normal' points into the body; it goes "
+                        "from the body into the foundation.");
               continue;
             }
           condition.normal = piece.normal;
@@ -214,20 +204,18 @@ namespace Viscoplastic
                 inspect_curve(side, largest_angle(triangulation, side));
               continue;
             }
-          std::ostringstream message;
-          message << "Boundary " << id << " has the role "
-                  << (condition.role == BoundaryRole::contact ? "contact" :
-                                                                "symmetry")
-                  << " but is not flat: its normals deviate by "
-                  << piece.deviation
-                  << " degrees from their mean, and 'Geometry/Flatness "
-                     "tolerance' is "
-                  << tolerance
-                  << "; give each flat piece a boundary id of its own"
-                  << (condition.is_unilateral() ?
-                        ", or the foundation a 'Foundation normal'." :
-                        ".");
-          AssertThrow(piece.deviation <= tolerance, ExcMessage(message.str()));
+          require(piece.deviation <= tolerance,
+                  "Boundary " + std::to_string(id) + " has the role " +
+                    name_of(condition.role) +
+                    " but is not flat: its normals deviate by " +
+                    as_text(piece.deviation) +
+                    " degrees from their mean, and 'Geometry/Flatness "
+                    "tolerance' is " +
+                    as_text(tolerance) +
+                    "; give each flat piece a boundary id of its own" +
+                    (condition.is_unilateral() ?
+                       ", or the foundation a 'Foundation normal'." :
+                       "."));
         }
   }
 
@@ -242,16 +230,15 @@ namespace Viscoplastic
     for (const auto &[id, condition] : boundary)
       if (condition.against)
         for (const auto &[other_id, other] : boundary)
-          AssertThrow(
+          require(
             other_id == id || touching.count({id, other_id}) == 0 ||
               (other.role != BoundaryRole::contact && !is_other_side(other_id)),
-            ExcMessage("Boundary " + std::to_string(id) +
-                       ", which is in contact with another body, has nodes in "
-                       "common with boundary " +
-                       std::to_string(other_id) +
-                       ", which is in contact, too; a node can be in contact "
-                       "with one other body or foundation. Leave a face "
-                       "between them free."));
+            "Boundary " + std::to_string(id) +
+              ", which is in contact with another body, has nodes in common "
+              "with boundary " +
+              std::to_string(other_id) +
+              ", which is in contact, too; a node can be in contact with one "
+              "other body or foundation. Leave a face between them free.");
   }
 
 
@@ -286,10 +273,10 @@ namespace Viscoplastic
   {
     if (!temperature)
       return;
-    AssertThrow(!has_source(),
-                ExcMessage("'Exact solution/Data' = solution makes no data for "
-                           "a body with a temperature; leave "
-                           "'Temperature/Value' out, or use 'Data' = scene."));
+    require(
+      !has_source(),
+      "'Exact solution/Data' = solution makes no data for a body with a "
+      "temperature; leave 'Temperature/Value' out, or use 'Data' = scene.");
     bool is_used = has_thermal_strain();
     for (const auto &material : materials)
       {
@@ -304,14 +291,11 @@ namespace Viscoplastic
           least = std::min(least, T);
         if (parameters.temperature.gas_constant.empty() && least > 0. &&
             least < suspiciously_cold)
-          {
-            std::ostringstream text;
-            text << "'Temperature/Value' is " << least
-                 << " K somewhere at t = 0, but '" << material->section
-                 << "/Activation energy' asks for absolute temperatures; if "
-                    "these are degrees Celsius, add 273.15.";
-            warnings.push_back(text.str());
-          }
+          warnings.push_back(
+            "'Temperature/Value' is " + as_text(least) +
+            " K somewhere at t = 0, but '" + material->section +
+            "/Activation energy' asks for absolute temperatures; if these are "
+            "degrees Celsius, add 273.15.");
       }
     if (!is_used)
       warnings.push_back("'Temperature/Value' has no effect: no material has "
@@ -327,49 +311,36 @@ namespace Viscoplastic
   {
     materials.clear();
     entries.clear();
+    const auto make = [this](const std::string        &section,
+                             const MaterialParameters &given) {
+      materials.push_back(
+        std::make_unique<const Material<dim>>(section,
+                                              given,
+                                              parameters.handler,
+                                              parameters.laws,
+                                              /* is_absent = */ false,
+                                              temperature.get()));
+    };
     if (parameters.materials.empty())
       {
-        materials.push_back(
-          std::make_unique<const Material<dim>>("Material",
-                                                parameters.material,
-                                                parameters.handler,
-                                                parameters.laws,
-                                                /* is_absent = */ false,
-                                                temperature.get()));
+        make("Material", parameters.material);
         for (const types::material_id id : ids)
           entries[id] = {materials[0].get()};
         return;
       }
 
-    const MaterialParameters &plain = parameters.material, defaults;
-    AssertThrow(plain.youngs_modulus == defaults.youngs_modulus &&
-                  plain.poissons_ratio == defaults.poissons_ratio &&
-                  plain.voigt_matrix == defaults.voigt_matrix &&
-                  plain.law == defaults.law,
-                ExcMessage("'Material' gives elasticity or a law beside "
-                           "numbered materials, but no cell would have it; "
-                           "give it to `Material <id>', or leave the numbers "
-                           "out."));
     for (const types::material_id id : ids)
       {
         const auto section = "Material " + std::to_string(id);
         const auto given   = parameters.materials.find(id);
-        AssertThrow(given != parameters.materials.end(),
-                    ExcMessage("Cells of the mesh have the material id " +
-                               std::to_string(id) +
-                               ", but there is no `subsection " + section +
-                               "'; the mesh has the material ids " + list(ids) +
-                               "."));
+        require(given != parameters.materials.end(),
+                "Cells of the mesh have the material id " + std::to_string(id) +
+                  ", but there is no `subsection " + section +
+                  "'; the mesh has the material ids " + list(ids) + ".");
         MaterialParameters named = given->second;
         if (names.has("material", id))
           named.name = names.of("material", id);
-        materials.push_back(
-          std::make_unique<const Material<dim>>(section,
-                                                named,
-                                                parameters.handler,
-                                                parameters.laws,
-                                                /* is_absent = */ false,
-                                                temperature.get()));
+        make(section, named);
         entries[id] = {materials.back().get()};
       }
     for (const auto &pair : parameters.materials)

@@ -5,7 +5,6 @@
 #include <viscoplastic_contact/scene/support.h>
 
 #include <limits>
-#include <sstream>
 
 namespace Viscoplastic
 {
@@ -31,19 +30,17 @@ namespace Viscoplastic
           if (name.empty())
             continue;
           const std::size_t d = std::string("xyz").substr(0, dim).find(name);
-          AssertThrow(name.size() == 1 && d != std::string::npos,
-                      ExcMessage("'" + entry + "': '" + excerpt(support) +
-                                 "' holds '" + excerpt(name) +
-                                 "', but components are " +
-                                 (dim == 2 ? "x and y." : "x, y and z.")));
+          require(name.size() == 1 && d != std::string::npos,
+                  "'" + entry + "': '" + excerpt(support) + "' holds '" +
+                    excerpt(name) + "', but components are " +
+                    (dim == 2 ? "x and y." : "x, y and z."));
           is_held[d] = any = true;
         }
-      AssertThrow(any,
-                  ExcMessage("'" + entry + "': '" + excerpt(support) +
-                             "' holds nothing; write `" +
-                             (entry == "Supports/Points" ? "coordinates" :
-                                                           "boundary ids") +
-                             ": components', such as x y."));
+      require(any,
+              "'" + entry + "': '" + excerpt(support) +
+                "' holds nothing; write `" +
+                (entry == "Supports/Points" ? "coordinates" : "boundary ids") +
+                ": components', such as x y.");
       std::string result;
       for (unsigned int d = 0; d < dim; ++d)
         result += std::string(d == 0 ? "" : "; ") + (is_held[d] ? "0" : "free");
@@ -58,17 +55,16 @@ namespace Viscoplastic
       std::set<types::boundary_id> result;
       for (const std::string &id : Utilities::split_string_list(text, ','))
         {
-          AssertThrow(!id.empty() && id.size() < 10 &&
-                        id.find_first_not_of("0123456789") == std::string::npos,
-                      ExcMessage("'Supports/Edges': '" + excerpt(id) +
-                                 "' in '" + excerpt(support) +
-                                 "' is no boundary id."));
+          require(!id.empty() && id.size() < 10 &&
+                    id.find_first_not_of("0123456789") == std::string::npos,
+                  "'Supports/Edges': '" + excerpt(id) + "' in '" +
+                    excerpt(support) + "' is no boundary id.");
           result.insert(Utilities::string_to_int(id));
         }
-      AssertThrow(result.size() > 1,
-                  ExcMessage("'Supports/Edges': '" + excerpt(support) +
-                             "' names one boundary; an edge is where at least "
-                             "two meet, such as `1, 3: y'."));
+      require(result.size() > 1,
+              "'Supports/Edges': '" + excerpt(support) +
+                "' names one boundary; an edge is where at least two meet, "
+                "such as `1, 3: y'.");
       return result;
     }
 
@@ -85,40 +81,17 @@ namespace Viscoplastic
       held.role         = BoundaryRole::displacement;
       held.displacement = displacement_of<dim>(
         colon == std::string::npos ? "" : text.substr(colon + 1), entry, text);
-      Support<dim>       result{"", {}, {}, BoundaryCondition<dim>(id, held)};
-      const std::string  where = text.substr(0, colon);
-      std::ostringstream place;
+      Support<dim>      result{"", {}, {}, BoundaryCondition<dim>(id, held)};
+      const std::string where = text.substr(0, colon);
       if (entry == "Supports/Points")
         {
           result.position = parse_point<dim>(where, entry);
-          place << "the point (" << *result.position << ')';
+          result.place    = "the point (" + as_text(*result.position) + ')';
         }
       else
         {
           result.boundaries = read_ids(where, text);
-          place << "the meeting of boundaries " << list(result.boundaries);
-        }
-      result.place = place.str();
-      return result;
-    }
-
-
-
-    /// The boundaries at each vertex of the coarse mesh, which all ranks have.
-    template <int dim>
-    std::map<unsigned int, std::set<types::boundary_id>>
-    boundaries_at_vertices(const Triangulation<dim> &triangulation)
-    {
-      std::map<unsigned int, std::set<types::boundary_id>> result;
-      for (const auto &cell : triangulation.cell_iterators_on_level(0))
-        {
-          for (const unsigned int v : cell->vertex_indices())
-            result[cell->vertex_index(v)];
-          for (const unsigned int f : cell->face_indices())
-            if (cell->at_boundary(f))
-              for (const unsigned int v : cell->face(f)->vertex_indices())
-                result[cell->face(f)->vertex_index(v)].insert(
-                  cell->face(f)->boundary_id());
+          result.place = "the meeting of boundaries " + list(result.boundaries);
         }
       return result;
     }
@@ -190,34 +163,30 @@ namespace Viscoplastic
                     here             = ids;
                   }
               }
-            std::ostringstream message;
-            message << "'Supports/Points': there is no vertex of the coarse "
-                       "mesh at ("
-                    << given << "); the nearest one is at ("
-                    << *support.position
-                    << "). More cells in the coarse mesh have more vertices.";
-            AssertThrow(nearest <= vertex_tolerance * size,
-                        ExcMessage(message.str()));
+            require(nearest <= vertex_tolerance * size,
+                    "'Supports/Points': there is no vertex of the coarse mesh "
+                    "at (" +
+                      as_text(given) + "); the nearest one is at (" +
+                      as_text(*support.position) +
+                      "). More cells in the coarse mesh have more vertices.");
           }
         else
           {
             for (const types::boundary_id id : here)
-              AssertThrow(boundary.count(id) == 1,
-                          ExcMessage("'Supports/Edges': there is no boundary " +
-                                     std::to_string(id) +
-                                     "; the mesh has the ids " +
-                                     list(boundary_ids(triangulation)) + "."));
-            AssertThrow(
-              std::any_of(vertices.begin(),
-                          vertices.end(),
-                          [&here](const auto &vertex) {
-                            return std::includes(vertex.second.begin(),
-                                                 vertex.second.end(),
-                                                 here.begin(),
-                                                 here.end());
-                          }),
-              ExcMessage("'Supports/Edges': boundaries " + list(here) +
-                         " do not meet."));
+              require(boundary.count(id) == 1,
+                      "'Supports/Edges': there is no boundary " +
+                        std::to_string(id) + "; the mesh has the ids " +
+                        list(boundary_ids(triangulation)) + ".");
+            require(std::any_of(vertices.begin(),
+                                vertices.end(),
+                                [&here](const auto &vertex) {
+                                  return std::includes(vertex.second.begin(),
+                                                       vertex.second.end(),
+                                                       here.begin(),
+                                                       here.end());
+                                }),
+                    "'Supports/Edges': boundaries " + list(here) +
+                      " do not meet.");
           }
         for (const types::boundary_id id : here)
           if (const BoundaryCondition<dim> &other = boundary.at(id);

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <viscoplastic_contact/base/messages.h>
 #include <viscoplastic_contact/base/types.h>
 #include <viscoplastic_contact/scene/temperature.h>
 
@@ -10,8 +11,8 @@ namespace Viscoplastic
     if (Utilities::trim(text).empty())
       return {};
     const Expression<1> number(text, entry);
-    AssertThrow(!number.depends_on_position() && !number.depends_on_time(),
-                ExcMessage("'" + entry + "' = " + text + " is not a number."));
+    require(!number.depends_on_position() && !number.depends_on_time(),
+            "'" + entry + "' = " + text + " is not a number.");
     return number.value(Point<1>(), 0.);
   }
 
@@ -21,8 +22,8 @@ namespace Viscoplastic
   optional_positive_number(const std::string &text, const std::string &entry)
   {
     const auto result = optional_number(text, entry);
-    AssertThrow(!result || *result > 0.,
-                ExcMessage("'" + entry + "' = " + text + " is not positive."));
+    require(!result || *result > 0.,
+            "'" + entry + "' = " + text + " is not positive.");
     return result;
   }
 
@@ -59,9 +60,9 @@ namespace Viscoplastic
   {
     if (!Utilities::trim(parameters.value).empty())
       return std::make_unique<const Temperature<dim>>(parameters, units);
-    AssertThrow(parameters.reference.empty() && parameters.gas_constant.empty(),
-                ExcMessage("'Temperature' has no `Value', so that its other "
-                           "entries mean nothing."));
+    require(
+      parameters.reference.empty() && parameters.gas_constant.empty(),
+      "'Temperature' has no `Value', so that its other entries mean nothing.");
     return nullptr;
   }
 

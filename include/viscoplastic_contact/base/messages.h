@@ -5,12 +5,42 @@
 
 #include <exception>
 #include <functional>
+#include <optional>
 #include <set>
+#include <sstream>
 #include <string>
 #include <vector>
 
 namespace Viscoplastic
 {
+  /// Throw ExcMessage with a sentence for the user.
+  [[noreturn]] void
+  refuse(const std::string &sentence);
+
+  /// The same unless a condition holds.
+  template <typename Condition>
+  void
+  require(const Condition &condition, const std::string &sentence)
+  {
+    if (!condition)
+      refuse(sentence);
+  }
+
+  /// A number or a place as a stream writes it.
+  template <typename T>
+  std::string
+  as_text(const T &value, const int digits = 6)
+  {
+    std::ostringstream text;
+    text.precision(digits);
+    text << value;
+    return text.str();
+  }
+
+  /// The number that a text is, or nothing if it is none.
+  std::optional<double>
+  number_of(const std::string &text);
+
   /// The message of an exception for the user, as one line, without the place
   /// in the code where it was thrown.
   std::string
@@ -46,6 +76,12 @@ namespace Viscoplastic
   std::string
   nearest_name(const std::string              &name,
                const std::vector<std::string> &candidates);
+
+  /// "; did you mean 'a'?" with the nearest candidate, @p otherwise without.
+  std::string
+  did_you_mean(const std::string              &name,
+               const std::vector<std::string> &candidates,
+               const std::string              &otherwise = ".");
 
   /// The identifier (letters, digits and underscores, no digit first) that
   /// begins at @p begin of @p text; empty if none begins there.

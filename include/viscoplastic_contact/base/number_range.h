@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
-#include <sstream>
-#include <string>
+#include <viscoplastic_contact/base/messages.h>
 
 /// Energies, norms and estimates of errors are made of squares, which leave the
 /// range of floating-point numbers long before the numbers themselves do: the
@@ -21,21 +20,19 @@ namespace Viscoplastic
   constexpr double least_time = 1e-30, largest_time = 1e30;
 
 
-  /// "<what> is <value>; it must lie between <least> and <largest> ...", and
-  /// why, and what to do.
-  inline std::string
-  out_of_range(const std::string &what,
-               const double       value,
-               const double       least,
-               const double       largest)
+  /// Throws ExcMessage unless a value lies in a range.
+  inline void
+  require_in_range(const std::string &what,
+                   const double       value,
+                   const double       least,
+                   const double       largest)
   {
-    std::ostringstream message;
-    message << what << " is " << value << "; it must lie between " << least
-            << " and " << largest
-            << ", where squares stay within the range of floating-point "
-               "numbers; choose other units or look for a datum that is too "
-               "large or too small.";
-    return message.str();
+    if (!(value >= least && value <= largest))
+      refuse(what + " is " + as_text(value) + "; it must lie between " +
+             as_text(least) + " and " + as_text(largest) +
+             ", where squares stay within the range of floating-point "
+             "numbers; choose other units or look for a datum that is too "
+             "large or too small.");
   }
 
 

@@ -5,6 +5,31 @@
 
 namespace Viscoplastic
 {
+  /// An entry of a law with its default and what the manual says of it.
+  struct DeclaredEntry
+  {
+    const char *name, *value, *help;
+  };
+
+  /// For LawDescription::declare: expressions with these names.
+  inline std::function<void(ParameterHandler &)>
+  declare_entries(const std::vector<DeclaredEntry> &entries)
+  {
+    return [entries](ParameterHandler &prm) {
+      for (const auto &[name, value, help] : entries)
+        prm.declare_entry(name, value, Patterns::Anything(), help);
+    };
+  }
+
+  /// For LawDescription::make.
+  template <typename Law>
+  std::unique_ptr<ViscoplasticLaw>
+  make_law(const LawSection &section)
+  {
+    return std::make_unique<Law>(section);
+  }
+
+
   /// The base of a law that is written point by point,
   ///
   ///     class Perzyna final : public PointwiseLaw<Perzyna>

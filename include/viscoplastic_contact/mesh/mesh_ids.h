@@ -5,6 +5,7 @@
 
 #include <viscoplastic_contact/parameters/parameters.h>
 
+#include <map>
 #include <set>
 
 namespace Viscoplastic
@@ -23,6 +24,12 @@ namespace Viscoplastic
   template <int dim>
   std::set<types::boundary_id>
   boundary_ids(const parallel::distributed::Triangulation<dim> &triangulation);
+
+  /// The ids of the boundaries at each vertex of the coarse mesh, by the index
+  /// of the vertex.
+  template <int dim>
+  std::map<unsigned int, std::set<types::boundary_id>>
+  boundaries_at_vertices(const Triangulation<dim> &triangulation);
 
   /// The pairs of ids of boundaries, either first, that have a vertex of the
   /// coarse mesh in common.

@@ -184,27 +184,6 @@ namespace Viscoplastic
 
 
 
-  /// Output fields that are written only if the scene asks for them.
-  enum class AdditionalField
-  {
-    total_strain,
-    irreversible_strain,
-    creep_strain,
-    creep_rate,
-    principal_stresses,
-    normal_traction,
-    friction_work
-  };
-
-  inline const char *
-  choices(AdditionalField)
-  {
-    return "total strain|irreversible strain|creep strain|creep rate|principal "
-           "stresses|normal traction|friction work";
-  }
-
-
-
   /// Fields that can be recorded at points, along lines and as integrals:
   /// fields of the body first, those of its boundary from `slip' on.
   enum class RecordedField
@@ -238,8 +217,10 @@ namespace Viscoplastic
   choices(RecordedField)
   {
     return "displacement|velocity|stress|von Mises stress|irreversible stress|"
-           "total strain|irreversible strain|creep strain|creep rate|history|principal "
-           "stresses|temperature|slip|slip rate|traction|bound|utilisation|stick|friction "
+           "total strain|irreversible strain|creep strain|creep "
+           "rate|history|principal "
+           "stresses|temperature|slip|slip "
+           "rate|traction|bound|utilisation|stick|friction "
            "work|contact pressure|gap|normal traction|stress vector";
   }
 
@@ -305,17 +286,19 @@ namespace Viscoplastic
 
 
 
-  /// An entry with any number of the values, separated by commas.
+  /// An entry with any number of the values, or of those that are @p allowed,
+  /// separated by commas.
   template <typename Choice>
   void
   add_choices(ParameterHandler  &prm,
               const std::string &entry,
               std::set<Choice>  &chosen,
-              const std::string &documentation)
+              const std::string &documentation,
+              const std::string &allowed = choices(Choice()))
   {
     prm.declare_entry(entry,
                       "",
-                      Patterns::MultipleSelection(choices(Choice())),
+                      Patterns::MultipleSelection(allowed),
                       documentation);
     prm.add_action(entry, [&chosen](const std::string &value) {
       chosen.clear();

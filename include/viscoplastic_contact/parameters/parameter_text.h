@@ -37,6 +37,10 @@ namespace Viscoplastic
     }
   };
 
+  /// The last line that sets an entry, given by its path; null if none does.
+  const ParameterLine *
+  last_line(const std::vector<ParameterLine> &lines, const std::string &path);
+
   /// What ParameterHandler is to read: the statements of some files, with those
   /// that they include in their places, and then of the assignments
   /// `Section/Entry=value' of the command line. Whether names and values are

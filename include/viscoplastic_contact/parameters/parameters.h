@@ -277,21 +277,16 @@ namespace Viscoplastic
 
   struct OutputParameters
   {
-    std::string               directory;
-    unsigned int              fields_every     = 1;
-    bool                      reference_fields = false, in_hdf5 = false;
-    double                    fields_interval = 0.;
-    double                    revolved_angle  = 0.;
-    std::string               points, lines, integrals;
-    bool                      lines_every_step = false;
-    std::set<RecordedField>   point_fields, line_fields;
-    std::set<AdditionalField> additional_fields;
-
-    bool
-    has(const AdditionalField field) const
-    {
-      return additional_fields.count(field) > 0;
-    }
+    std::string  directory;
+    unsigned int fields_every     = 1;
+    bool         reference_fields = false, in_hdf5 = false;
+    double       fields_interval = 0.;
+    double       revolved_angle  = 0.;
+    std::string  points, lines, integrals;
+    bool         lines_every_step = false;
+    /// Fields at points and along lines, and those of outputs that are written
+    /// only if the scene asks for them.
+    std::set<RecordedField> point_fields, line_fields, additional_fields;
 
     void
     declare(ParameterHandler &prm);

@@ -17,9 +17,21 @@ namespace Viscoplastic
 
 
   /// Phases of equal steps, ending exactly on the listed times.
-  class TimeSchedule
+  struct TimeSchedule
   {
-  public:
+    /// A phase and what it asks for.
+    struct Phase
+    {
+      double       start, end;
+      unsigned int n_steps;
+
+      double
+      step_size() const
+      {
+        return (end - start) / n_steps;
+      }
+    };
+
     /// @p phases as `end time: number of steps, ...', at most 1e9 steps;
     /// throws ExcMessage.
     explicit TimeSchedule(const std::string &phases);
@@ -53,19 +65,6 @@ namespace Viscoplastic
       return 0;
     }
 
-    /// A phase and what it asks for.
-    struct Phase
-    {
-      double       start, end;
-      unsigned int n_steps;
-
-      double
-      step_size() const
-      {
-        return (end - start) / n_steps;
-      }
-    };
-
     /// The phase with start <= t < end. 0 <= t < end_time().
     const Phase &
     phase_at(const double t) const;
@@ -84,22 +83,6 @@ namespace Viscoplastic
       return phases.back().end;
     }
 
-  private:
-    std::vector<Phase> phases;
+    const std::vector<Phase> phases;
   };
-
-  /// One phase of `Time/Phases': its end as the scene gives it, and its steps.
-  struct StepsUntil
-  {
-    std::string  end;
-    unsigned int n_steps;
-  };
-
-  /// The phases of a text that TimeSchedule accepts.
-  std::vector<StepsUntil>
-  read_phases(const std::string &phases);
-
-  /// The phases as `Time/Phases' has them.
-  std::string
-  write_phases(const std::vector<StepsUntil> &phases);
 } // namespace Viscoplastic

@@ -41,95 +41,61 @@ namespace Viscoplastic
   /// it slips or opens after a stage. A body gives way when its mesh is
   /// refined, and the loads do work; what changes of the mesh do to the stored
   /// energy beyond that is no physics and counts apart.
-  class EnergyBalance
+  struct EnergyBalance
   {
-  public:
+    double initial_energy = 0., stored_energy = 0., external_work = 0.,
+           viscous_dissipation = 0., friction_dissipation = 0.;
+    /// What thermal strain has done.
+    double thermal_work = 0.;
+    /// What changes of the mesh have added to the stored energy beyond the work
+    /// of the loads, which comes from the mesh alone.
+    double adaptation_energy = 0.;
+    /// The same of stages of construction: the energy of what is removed, and
+    /// what the surroundings lose when they give way at once.
+    double construction_energy = 0.;
+    /// The largest amount that loads or heating had given.
+    double largest_work = 0.;
+
     void
-    begin(const double stored_energy)
+    begin(const double energy)
     {
-      initial_energy = energy = stored_energy;
+      initial_energy = stored_energy = energy;
     }
 
     void
     add_step(const StepEnergies &step)
     {
-      energy = step.stored;
-      work += step.external_work;
-      largest_work = std::max(largest_work, std::abs(work));
-      viscous += step.viscous_dissipation;
-      friction += step.friction_dissipation;
-      thermal += step.thermal_work;
-      largest_work = std::max(largest_work, std::abs(thermal));
+      stored_energy = step.stored;
+      external_work += step.external_work;
+      viscous_dissipation += step.viscous_dissipation;
+      friction_dissipation += step.friction_dissipation;
+      thermal_work += step.thermal_work;
+      largest_work = std::max(
+        {largest_work, std::abs(external_work), std::abs(thermal_work)});
     }
 
-    /// Add a change of the mesh. What it does to the stored energy beyond the
-    /// work of the loads comes from the mesh alone.
+    /// Add a change between two steps: the work of the loads, and to
+    /// adaptation_energy or construction_energy, @p beyond, what the stored
+    /// energy gains beside that.
     void
-    add_mesh_change(const EnergiesOnMesh &before, const EnergiesOnMesh &after)
+    add_change(const EnergiesOnMesh &before,
+               const EnergiesOnMesh &after,
+               double               &beyond)
     {
-      adaptation += add_change(before, after);
-    }
-
-    /// Add the beginning of a stage of construction. What it does to the stored
-    /// energy beyond the work of the loads goes with the materials: that of
-    /// what is removed, and what the surroundings lose when they give way at
-    /// once.
-    void
-    add_stage(const EnergiesOnMesh &before, const EnergiesOnMesh &after)
-    {
-      construction += add_change(before, after);
-    }
-
-    double
-    stored_energy() const
-    {
-      return energy;
-    }
-
-    double
-    external_work() const
-    {
-      return work;
-    }
-
-    double
-    viscous_dissipation() const
-    {
-      return viscous;
-    }
-
-    double
-    friction_dissipation() const
-    {
-      return friction;
-    }
-
-    /// The work of thermal strain since t = 0.
-    double
-    thermal_work() const
-    {
-      return thermal;
-    }
-
-    double
-    adaptation_energy() const
-    {
-      return adaptation;
-    }
-
-    double
-    construction_energy() const
-    {
-      return construction;
+      const double of_loads = after.of_loads - before.of_loads;
+      external_work += of_loads;
+      largest_work = std::max(largest_work, std::abs(external_work));
+      beyond += after.stored - before.stored - of_loads;
     }
 
     /// The residual of the energy balance since t = 0.
     double
     defect() const
     {
-      return work + thermal -
-             (energy - initial_energy - adaptation - construction) - viscous -
-             friction;
+      return external_work + thermal_work -
+             (stored_energy - initial_energy - adaptation_energy -
+              construction_energy) -
+             viscous_dissipation - friction_dissipation;
     }
 
     /// The sum of absolute energies exchanged, to which defect() is compared,
@@ -144,24 +110,9 @@ namespace Viscoplastic
     void
     exchange(Archive &archive)
     {
-      archive &initial_energy &energy &work &largest_work &viscous &friction
-        &adaptation &construction &thermal;
+      archive &initial_energy &stored_energy &external_work &largest_work
+        &viscous_dissipation &friction_dissipation &adaptation_energy
+          &construction_energy &thermal_work;
     }
-
-  private:
-    /// Add the work of the loads in a change between two steps, and return what
-    /// it adds to the stored energy beyond that.
-    double
-    add_change(const EnergiesOnMesh &before, const EnergiesOnMesh &after)
-    {
-      const double of_loads = after.of_loads - before.of_loads;
-      work += of_loads;
-      largest_work = std::max(largest_work, std::abs(work));
-      return after.stored - before.stored - of_loads;
-    }
-
-    double initial_energy = 0., energy = 0., work = 0., largest_work = 0.,
-           viscous = 0., friction = 0., adaptation = 0., construction = 0.,
-           thermal = 0.;
   };
 } // namespace Viscoplastic

@@ -91,6 +91,13 @@ namespace Viscoplastic
     std::vector<double>
     values(const State<dim> &old, const State<dim> &state) const;
 
+    /// The physical quantity of a value.
+    Quantity
+    quantity(const std::size_t value) const
+    {
+      return quantities[value];
+    }
+
     /// Whether a value is to be summed over the steps.
     bool
     is_of_step(const std::size_t value) const
@@ -111,7 +118,7 @@ namespace Viscoplastic
     };
 
     std::vector<Piece>
-    pieces_of_cells(const OutputIntegral &integral) const;
+    pieces_of(const OutputIntegral &integral) const;
 
     /// What the pieces store, and have dissipated.
     std::array<double, 2>
@@ -119,11 +126,10 @@ namespace Viscoplastic
              const State<dim>         &old,
              const State<dim>         &state) const;
 
-    std::vector<Piece>
-    pieces_of_faces(const OutputIntegral &integral) const;
 
     const Discretization<dim>      &discretization;
     std::vector<std::string>        all_names;
+    std::vector<Quantity>           quantities; // of the names
     std::vector<bool>               is_dissipation;
     std::vector<std::vector<Piece>> pieces; // an integral
     /// The strain within cells, for their elastic energy; null unless needed.

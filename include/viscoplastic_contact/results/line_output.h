@@ -58,9 +58,9 @@ namespace Viscoplastic
     void
     name_files(const std::string &directory);
 
-    const Scene<dim>             &scene;
-    const std::set<RecordedField> fields;
-    const Discretization<dim>    *discretization = nullptr;
+    const Scene<dim>          &scene;
+    std::set<RecordedField>    fields;
+    const Discretization<dim> *discretization = nullptr;
     /// The fields along each line on the present mesh; empty until they are
     /// needed.
     std::vector<std::unique_ptr<FieldProbes<dim>>> probes;

@@ -76,13 +76,13 @@ namespace Viscoplastic
     record_mesh_change(const EnergiesOnMesh &before,
                        const EnergiesOnMesh &after)
     {
-      balance.add_mesh_change(before, after);
+      balance.add_change(before, after, balance.adaptation_energy);
     }
 
     void
     record_stage(const EnergiesOnMesh &before, const EnergiesOnMesh &after)
     {
-      balance.add_stage(before, after);
+      balance.add_change(before, after, balance.construction_energy);
     }
 
     /// Go on from a state that an earlier part of the run has reached in
@@ -232,15 +232,8 @@ namespace Viscoplastic
                  newton_iterations = 0, implicit_steps = 0;
     RunSummary<dim>    run;
     ActingEffects<dim> effects;
-    /// Whether the user has been told that forces do not balance well.
-    bool balance_is_doubtful = false;
-    /// Whether an error of the solver above its tolerance has been told.
-    bool solver_error_is_told = false;
-    /// Whether the user has been told of a support that carries a force.
-    bool support_carries = false;
-    /// Whether the user has been told that nothing presses a body that only
-    /// contact holds.
-    bool is_loose = false;
+    /// What the user has been told of steps, which is said once.
+    std::set<std::string> told;
 
     std::unique_ptr<Statistics> statistics;
     Progress                    progress;

@@ -3,6 +3,7 @@
 
 #include <viscoplastic_contact/base/units.h>
 
+#include <cstdint>
 #include <fstream>
 #include <string>
 #include <vector>
@@ -62,6 +63,23 @@ namespace Viscoplastic
     std::vector<Entry> entries;
   };
 
+
+
+  /// The beginning of a table whose rows begin with the number of a step: its
+  /// first line, and the rows of steps up to one.
+  struct TableBeginning
+  {
+    std::string    header;
+    std::size_t    n_rows = 0;
+    std::uintmax_t size   = 0; // in bytes
+  };
+
+  TableBeginning
+  beginning_of_table(const std::string &file, const unsigned int last_step);
+
+  /// Go on behind the beginning of a table. Throws ExcMessage.
+  std::ofstream
+  append_to_table(const std::string &file, const TableBeginning &beginning);
 
 
   /// A table written row by row as comma separated values: the first row fixes

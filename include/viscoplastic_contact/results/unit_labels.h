@@ -13,10 +13,9 @@ namespace Viscoplastic
   Quantity
   quantity_of_field(const std::string &name);
 
-  /// The physical quantity of an integral over a boundary or a material, given
-  /// its name by FieldIntegrals.
+  /// What an integral of a quantity over a boundary or a material is.
   Quantity
-  quantity_of_integral(const std::string &name);
+  integrated(const Quantity quantity, const bool is_of_boundary);
 
   /// The estimates of cells are a root of energies, or of the quantity of
   /// interest, which may be anything.

@@ -159,22 +159,16 @@ namespace Viscoplastic
     bool
     has_viscosity() const
     {
-      for (const auto &material : materials)
-        if (material->law)
-          return true;
-      return has_source();
+      return has_source() ||
+             on_any_material([](const auto &m) { return m.law != nullptr; });
     }
 
     /// Whether a law has history variables.
     bool
     has_history() const
     {
-      return std::any_of(materials.begin(),
-                         materials.end(),
-                         [](const auto &material) {
-                           return material->law &&
-                                  material->law->n_history_variables > 0;
-                         });
+      return on_any_material(
+        [](const auto &m) { return m.law && m.law->n_history_variables > 0; });
     }
 
     /// Whether all steps are of backward Euler; known with the mesh, as the
@@ -217,11 +211,8 @@ namespace Viscoplastic
     bool
     has_thermal_strain() const
     {
-      return std::any_of(materials.begin(),
-                         materials.end(),
-                         [](const auto &material) {
-                           return material->thermal_expansion.has_value();
-                         });
+      return on_any_material(
+        [](const auto &m) { return m.thermal_expansion.has_value(); });
     }
 
     /// Whether thermal strain at t = 0 may not be zero.
@@ -350,6 +341,16 @@ namespace Viscoplastic
                          [&holds](const auto &pair) {
                            return holds(pair.second);
                          });
+    }
+
+    /// Whether @p holds (material) is true of some material.
+    template <typename Predicate>
+    bool
+    on_any_material(const Predicate &holds) const
+    {
+      return std::any_of(materials.begin(),
+                         materials.end(),
+                         [&holds](const auto &one) { return holds(*one); });
     }
 
     /// Whether any output asks for what friction has done per area.

@@ -89,9 +89,8 @@ namespace Viscoplastic
       if (Utilities::MPI::this_mpi_process(communicator) == 0)
         result = run_script(name, plane_model);
       result = Utilities::MPI::broadcast(communicator, result, 0);
-      AssertThrow(result.second.empty(),
-                  ExcMessage("The mesh file '" + name + "' " + result.second +
-                             "."));
+      require(result.second.empty(),
+              "The mesh file '" + name + "' " + result.second + ".");
       return std::move(result.first);
     }
 
@@ -104,17 +103,15 @@ namespace Viscoplastic
       const std::string     it = "The mesh file '" + name + "' ";
       std::error_code       error;
       const fs::file_status status = fs::status(name, error);
-      AssertThrow(fs::exists(status), ExcMessage(it + "does not exist."));
-      AssertThrow(!fs::is_directory(status),
-                  ExcMessage(it + "is a directory."));
-      AssertThrow(fs::is_regular_file(status),
-                  ExcMessage(it + "is not a regular file."));
+      require(fs::exists(status), it + "does not exist.");
+      require(!fs::is_directory(status), it + "is a directory.");
+      require(fs::is_regular_file(status), it + "is not a regular file.");
       std::ifstream input(name, std::ios::binary);
-      AssertThrow(input, ExcMessage(it + "cannot be opened."));
+      require(input, it + "cannot be opened.");
       std::string text{std::istreambuf_iterator<char>(input),
                        std::istreambuf_iterator<char>()};
-      AssertThrow(text.find_first_not_of(" \t\r\n") != std::string::npos,
-                  ExcMessage(it + "is empty."));
+      require(text.find_first_not_of(" \t\r\n") != std::string::npos,
+              it + "is empty.");
       return text;
     }
 
@@ -138,20 +135,16 @@ namespace Viscoplastic
         return;
       const bool is_surface =
         suffix == ".stl" || suffix == ".ply" || suffix == ".obj";
-      AssertThrow(
-        false,
-        ExcMessage(
-          "The mesh file '" + name + "' cannot be read: it is " +
-          (is_surface ? "a surface of triangles (" :
-                        "a geometry without a mesh (") +
-          format->second + "), but the body has to be filled with " +
-          "quadrilaterals (2D) or hexahedra (3D). " +
-          (is_surface ?
-             "Gmsh makes them of it: Classify 2D reparametrizes the surface, "
-             "then add a volume" :
-             "Open it in Gmsh") +
-          ", set Mesh.RecombineAll = 1 and Mesh.SubdivisionAlgorithm = 1 (in "
-          "3D 2), give boundaries physical groups, and save as .msh."));
+      refuse("The mesh file '" + name + "' cannot be read: it is " +
+             (is_surface ? "a surface of triangles (" :
+                           "a geometry without a mesh (") +
+             format->second + "), but the body has to be filled with " +
+             "quadrilaterals (2D) or hexahedra (3D). " +
+             (is_surface ? "Gmsh makes them of it: Classify 2D reparametrizes "
+                           "the surface, then add a volume" :
+                           "Open it in Gmsh") +
+             ", set Mesh.RecombineAll = 1 and Mesh.SubdivisionAlgorithm = 1 "
+             "(in 3D 2), give boundaries physical groups, and save as .msh.");
     }
 
 
@@ -338,13 +331,9 @@ namespace Viscoplastic
     catch (const std::exception &exception)
       {
         // Lines are those of what has been read.
-        AssertThrow(false,
-                    ExcMessage("The mesh file '" + name +
-                               "' cannot be read as " +
-                               (is_msh ? "msh" :
-                                         "what contrib/convert_mesh makes of "
-                                         "it") +
-                               ": " + reason(exception) + "."));
+        refuse("The mesh file '" + name + "' cannot be read as " +
+               (is_msh ? "msh" : "what contrib/convert_mesh makes of it") +
+               ": " + reason(exception) + ".");
       }
     return std::move(reader.mesh);
   }

@@ -21,9 +21,9 @@ namespace Viscoplastic
     if (log_name.empty() || Utilities::MPI::this_mpi_process(communicator) != 0)
       return;
     log_file.open(log_name);
-    require(log_file,
-            "The log file '" + log_name +
-              "' cannot be written; give --log another name.");
+    AssertThrow(log_file,
+                ExcMessage("The log file '" + log_name +
+                           "' cannot be written; give --log another name."));
   }
 
 
@@ -51,11 +51,13 @@ namespace Viscoplastic
   Console::check()
   {
     everywhere.flush();
-    require(!log_file.is_open() || log_file.flush(),
-            "The log file '" + log_name +
-              "' is not complete: writing failed; is the disk full?");
-    require(!speaks || std::cout.flush(),
-            "Writing to the standard output failed; is the disk full?");
+    AssertThrow(!log_file.is_open() || log_file.flush(),
+                ExcMessage(
+                  "The log file '" + log_name +
+                  "' is not complete: writing failed; is the disk full?"));
+    AssertThrow(!speaks || std::cout.flush(),
+                ExcMessage(
+                  "Writing to the standard output failed; is the disk full?"));
   }
 
 

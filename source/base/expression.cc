@@ -144,12 +144,13 @@ namespace Viscoplastic
       {
         numbers.clear(); // refused below
       }
-    require(numbers.size() == dim &&
-              std::all_of(numbers.begin(),
-                          numbers.end(),
-                          [](const double x) { return std::isfinite(x); }),
-            "'" + entry + "' is '" + excerpt(text) + "', but it needs " +
-              std::to_string(dim) + " finite numbers.");
+    AssertThrow(numbers.size() == dim &&
+                  std::all_of(numbers.begin(),
+                              numbers.end(),
+                              [](const double x) { return std::isfinite(x); }),
+                ExcMessage("'" + entry + "' is '" + excerpt(text) +
+                           "', but it needs " + std::to_string(dim) +
+                           " finite numbers."));
     Point<dim> result;
     for (unsigned int d = 0; d < dim; ++d)
       result[d] = numbers[d];
@@ -318,10 +319,11 @@ namespace Viscoplastic
                                           const std::string &entry)
   {
     const auto parts = Utilities::split_string_list(text, ';');
-    require(parts.size() == n_components,
-            "'" + entry + "' needs " + std::to_string(n_components) +
-              " components separated by semicolons, but '" + excerpt(text) +
-              "' has " + std::to_string(parts.size()) + ".");
+    AssertThrow(parts.size() == n_components,
+                ExcMessage(
+                  "'" + entry + "' needs " + std::to_string(n_components) +
+                  " components separated by semicolons, but '" + excerpt(text) +
+                  "' has " + std::to_string(parts.size()) + "."));
     for (const std::string &part : parts)
       components.emplace_back(part, entry);
   }

@@ -32,9 +32,9 @@ namespace Viscoplastic
     void
     check_written(const bool success, const std::string &name)
     {
-      require(success,
-              "'" + name + "' cannot be written: " + std::strerror(errno) +
-                ".");
+      AssertThrow(success,
+                  ExcMessage("'" + name + "' cannot be written: " +
+                             std::strerror(errno) + "."));
     }
 
 
@@ -136,7 +136,8 @@ namespace Viscoplastic
   {
     std::error_code   none;
     const std::string kind = kind_of(fs::symlink_status(name, none).type());
-    require(kind.empty(), "'" + name + "' cannot be written: " + kind + ".");
+    AssertThrow(kind.empty(),
+                ExcMessage("'" + name + "' cannot be written: " + kind + "."));
   }
 
 
@@ -146,7 +147,8 @@ namespace Viscoplastic
   {
     std::error_code   none;
     const std::string kind = kind_of(fs::status(name, none).type());
-    require(kind.empty(), "'" + name + "' cannot be read: " + kind + ".");
+    AssertThrow(kind.empty(),
+                ExcMessage("'" + name + "' cannot be read: " + kind + "."));
     errno = 0;
     std::ifstream file(name, std::ios::binary);
     if (!file && (errno == ENOENT || errno == ENOTDIR))
@@ -155,8 +157,9 @@ namespace Viscoplastic
     // To insert nothing would count as a failure.
     if (file && file.peek() != std::ifstream::traits_type::eof())
       bytes << file.rdbuf();
-    require(file && bytes,
-            "'" + name + "' cannot be read: " + std::strerror(errno) + ".");
+    AssertThrow(file && bytes,
+                ExcMessage("'" + name +
+                           "' cannot be read: " + std::strerror(errno) + "."));
     return bytes.str();
   }
 

@@ -239,13 +239,13 @@ namespace Viscoplastic
         refuse(where + did_you_mean(unknown,
                                     names_of_units(wanted),
                                     "; it must be " + allowed + "."));
-      require(found->end == text.size() + 1,
-              where + ", which is no unit behind '" +
-                excerpt(text.substr(0, found->end - 1)) + "'; it must be " +
-                allowed + ".");
-      require(found->unit.dimension == wanted,
-              where + ", " + in_words(found->unit.dimension) + "; it must be " +
-                allowed + ".");
+      AssertThrow(found->end == text.size() + 1,
+                  ExcMessage(where + ", which is no unit behind '" +
+                             excerpt(text.substr(0, found->end - 1)) +
+                             "'; it must be " + allowed + "."));
+      AssertThrow(found->unit.dimension == wanted,
+                  ExcMessage(where + ", " + in_words(found->unit.dimension) +
+                             "; it must be " + allowed + "."));
       return found->unit;
     }
   } // namespace
@@ -416,13 +416,15 @@ namespace Viscoplastic
       missing.emplace_back("Time");
     if (stress_name.empty() && force_name.empty())
       missing.emplace_back("Stress");
-    require(
+    AssertThrow(
       missing.empty(),
-      "'Units' has no " + enumeration(missing) +
-        "; give `Length', `Time' and `Stress' (or `Force'), or none of them.");
-    require(stress_name.empty() || force_name.empty(),
-            "'Units' has both `Stress' and `Force'; give one of them, the "
-            "other one follows.");
+      ExcMessage(
+        "'Units' has no " + enumeration(missing) +
+        "; give `Length', `Time' and `Stress' (or `Force'), or none of them."));
+    AssertThrow(
+      stress_name.empty() || force_name.empty(),
+      ExcMessage("'Units' has both `Stress' and `Force'; give one of them, the "
+                 "other one follows."));
     length = declared_unit("Length", length_name, length_dimension);
     time   = declared_unit("Time", time_name, time_dimension);
     if (!stress_name.empty())

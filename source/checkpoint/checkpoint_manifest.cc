@@ -44,10 +44,11 @@ namespace Viscoplastic
   CheckpointManifest::of_text(const std::string &text)
   {
     const auto require_sense = [](const bool condition) {
-      require(condition, "the manifest is damaged");
+      AssertThrow(condition, ExcMessage("the manifest is damaged"));
     };
-    require(text.compare(0, first_line.size() + 1, first_line + '\n') == 0,
-            "its format is that of another version of the program");
+    AssertThrow(text.compare(0, first_line.size() + 1, first_line + '\n') == 0,
+                ExcMessage(
+                  "its format is that of another version of the program"));
     const std::size_t last = text.rfind("\nchecksum ");
     require_sense(last != std::string::npos &&
                   text.substr(last + 1) ==

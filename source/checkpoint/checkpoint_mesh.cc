@@ -20,7 +20,8 @@ namespace Viscoplastic
   void
   require_sense(const bool condition)
   {
-    require(condition, "The checkpoint contradicts itself or the mesh.");
+    AssertThrow(condition,
+                ExcMessage("The checkpoint contradicts itself or the mesh."));
   }
 
 

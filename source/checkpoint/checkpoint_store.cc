@@ -30,7 +30,7 @@ namespace Viscoplastic
     read_file(const std::string &name)
     {
       const std::optional<std::string> bytes = read_file_if_any(name);
-      require(bytes, "'" + name + "' cannot be read.");
+      AssertThrow(bytes, ExcMessage("'" + name + "' cannot be read."));
       return *bytes;
     }
 
@@ -42,14 +42,16 @@ namespace Viscoplastic
     {
       std::error_code error;
       const auto      size = fs::file_size(directory + file.name, error);
-      require(!error, "the file " + excerpt(file.name) + " is missing");
-      require(size == file.size,
-              "the file " + excerpt(file.name) + " has " +
-                std::to_string(size) + " bytes instead of " +
-                std::to_string(file.size));
+      AssertThrow(!error,
+                  ExcMessage("the file " + excerpt(file.name) + " is missing"));
+      AssertThrow(size == file.size,
+                  ExcMessage("the file " + excerpt(file.name) + " has " +
+                             std::to_string(size) + " bytes instead of " +
+                             std::to_string(file.size)));
       std::string bytes = read_file(directory + file.name);
-      require(bytes.size() == file.size && checksum(bytes) == file.checksum,
-              "the file " + excerpt(file.name) + " does not have its checksum");
+      AssertThrow(bytes.size() == file.size && checksum(bytes) == file.checksum,
+                  ExcMessage("the file " + excerpt(file.name) +
+                             " does not have its checksum"));
       return bytes;
     }
 
@@ -188,9 +190,10 @@ namespace Viscoplastic
         if (!entry.is_complete || entry.path == path(entry.n))
           result.push_back(entry);
       }
-    require(!error,
-            "The directory '" + directory +
-              "' for checkpoints cannot be read: " + error.message() + '.');
+    AssertThrow(!error,
+                ExcMessage("The directory '" + directory +
+                           "' for checkpoints cannot be read: " +
+                           error.message() + '.'));
     std::sort(result.begin(), result.end(), [](const Entry &a, const Entry &b) {
       return std::make_pair(a.n, a.path) < std::make_pair(b.n, b.path);
     });
@@ -206,10 +209,10 @@ namespace Viscoplastic
       std::error_code error;
       if (rank == 0)
         fs::create_directories(directory, error);
-      require(!error,
-              "The directory '" + directory +
-                "' for checkpoints cannot be written; change "
-                "'Checkpoint/Directory' or its permissions.");
+      AssertThrow(!error,
+                  ExcMessage("The directory '" + directory +
+                             "' for checkpoints cannot be written; change "
+                             "'Checkpoint/Directory' or its permissions."));
     });
   }
 
@@ -337,8 +340,9 @@ namespace Viscoplastic
             text = Utilities::MPI::broadcast(communicator, text);
             fail_together(communicator, [&]() {
               manifest = CheckpointManifest::of_text(text);
-              require(manifest.n == n,
-                      "it is of step " + std::to_string(manifest.n));
+              AssertThrow(manifest.n == n,
+                          ExcMessage("it is of step " +
+                                     std::to_string(manifest.n)));
               for (std::size_t i = rank; i < manifest.files.size();
                    i += n_ranks)
                 read_checked(path(n) + '/', manifest.files[i]);

@@ -144,10 +144,11 @@ namespace Viscoplastic
                                     state.n <= schedule.n_steps() &&
                                       schedule.step(state.n).t == state.t &&
                                       schedule.step(state.n).k == state.k);
-      require(is_on_schedule,
-              "'Time/Phases' = " + run.scene.parameters.time.phases +
-                " does not contain the step of the checkpoint '" + path +
-                "'; change only what comes after it.");
+      AssertThrow(is_on_schedule,
+                  ExcMessage(
+                    "'Time/Phases' = " + run.scene.parameters.time.phases +
+                    " does not contain the step of the checkpoint '" + path +
+                    "'; change only what comes after it."));
     }
 
 
@@ -352,21 +353,22 @@ namespace Viscoplastic
   {
     const std::string path = store.path(checkpoint.n),
                       name = "The checkpoint '" + path + "'";
-    require(checkpoint.dimension == dim && changes.forbidden.empty(),
-            name + " cannot go on with other unknowns: " +
-              enumeration(changes.forbidden) +
-              "; undo that, or begin without --restart.");
+    AssertThrow(checkpoint.dimension == dim && changes.forbidden.empty(),
+                ExcMessage(name + " cannot go on with other unknowns: " +
+                           enumeration(changes.forbidden) +
+                           "; undo that, or begin without --restart."));
     BinaryReader archive(store.read(checkpoint, run_file));
     CoarseMesh   coarse_mesh;
     archive &coarse_mesh.topology &coarse_mesh.vertices;
-    require(coarse_mesh.agrees_with(describe_coarse_mesh(triangulation)),
-            name + " belongs to another coarse mesh.");
+    AssertThrow(coarse_mesh.agrees_with(describe_coarse_mesh(triangulation)),
+                ExcMessage(name + " belongs to another coarse mesh."));
     for (bool &has_field : has_nodal_field)
       archive &has_field;
-    require(has_nodal_field[3] == run.scene.keeps_friction_work(),
-            name + " cannot go on with another sum: `friction work' among "
-                   "'Output/Additional fields' has to be there from the "
-                   "beginning or not at all.");
+    AssertThrow(
+      has_nodal_field[3] == run.scene.keeps_friction_work(),
+      ExcMessage(name + " cannot go on with another sum: `friction work' among "
+                        "'Output/Additional fields' has to be there from the "
+                        "beginning or not at all."));
     archive &has_estimate &output_times &earlier_seconds;
     exchange_run(archive, run);
     exchange_memory(archive, memory);
@@ -437,11 +439,11 @@ namespace Viscoplastic
       return !Utilities::MPI::logical_or(!complete, communicator);
     };
     // On as many ranks as before, each finds all in its own file.
-    require(((n_ranks == checkpoint.n_ranks && unpack(rank, rank + 1)) ||
-             unpack(0, checkpoint.n_ranks)) &&
-              !has_bytes_to_spare,
-            "The checkpoint '" + store.path(checkpoint.n) +
-              "' does not fit the scene.");
+    AssertThrow(((n_ranks == checkpoint.n_ranks && unpack(rank, rank + 1)) ||
+                 unpack(0, checkpoint.n_ranks)) &&
+                  !has_bytes_to_spare,
+                ExcMessage("The checkpoint '" + store.path(checkpoint.n) +
+                           "' does not fit the scene."));
     if (changes.of_data) // of other tangents
       memory.quantity = {};
     return memory;

@@ -38,15 +38,18 @@ namespace Viscoplastic
         std::all_of(name.begin(), name.end(), [](const unsigned char c) {
           return std::isalnum(c) != 0 || c == '_';
         });
-      require(is_word,
-              "the shared library '" + file + "' has a law with the name '" +
-                excerpt(name) +
-                "'; names of laws have letters, digits and underscores.");
+      AssertThrow(is_word,
+                  ExcMessage(
+                    "the shared library '" + file +
+                    "' has a law with the name '" + excerpt(name) +
+                    "'; names of laws have letters, digits and underscores."));
       const std::string taken = '|' + viscoplastic_law_names(others) + '|';
-      require(taken.find('|' + name + '|') == std::string::npos,
-              "the shared library '" + file + "' has a law with the name '" +
-                name + "', which another law has; the laws without it are " +
-                viscoplastic_law_names(others) + ".");
+      AssertThrow(taken.find('|' + name + '|') == std::string::npos,
+                  ExcMessage(
+                    "the shared library '" + file +
+                    "' has a law with the name '" + name +
+                    "', which another law has; the laws without it are " +
+                    viscoplastic_law_names(others) + "."));
     }
   } // namespace
 
@@ -60,34 +63,38 @@ namespace Viscoplastic
     // All symbols at once: a function that is missing must not end a run in the
     // middle. What is loaded stays, since laws are used until the end.
     void *library = dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL);
-    require(library != nullptr,
-            "the shared library '" + file +
-              "' cannot be loaded: " + excerpt(loader_message(file), 300) +
-              ". Laws have to be built for this version of the program.");
+    AssertThrow(library != nullptr,
+                ExcMessage(
+                  "the shared library '" + file +
+                  "' cannot be loaded: " + excerpt(loader_message(file), 300) +
+                  ". Laws have to be built for this version of the program."));
 
     const auto interface = reinterpret_cast<const char *(*)()>(
       dlsym(library, "viscoplastic_contact_law_interface"));
     const auto describe =
       reinterpret_cast<void (*)(std::vector<LawDescription> &)>(
         dlsym(library, "viscoplastic_contact_describe_laws"));
-    require(
+    AssertThrow(
       interface != nullptr && describe != nullptr,
-      "the shared library '" + file +
-        "' has no laws: VISCOPLASTIC_LAW_LIBRARY is missing in its source.");
+      ExcMessage(
+        "the shared library '" + file +
+        "' has no laws: VISCOPLASTIC_LAW_LIBRARY is missing in its source."));
     const char       *version = interface();
     const std::string theirs  = version == nullptr ? "0" : version;
-    require(theirs == VISCOPLASTIC_CONTACT_LAW_INTERFACE,
-            "the shared library '" + file + "' was built for version " +
-              excerpt(theirs) +
-              " of the laws' interface, but this program has " +
-              VISCOPLASTIC_CONTACT_LAW_INTERFACE + "; build it again.");
+    AssertThrow(theirs == VISCOPLASTIC_CONTACT_LAW_INTERFACE,
+                ExcMessage("the shared library '" + file +
+                           "' was built for version " + excerpt(theirs) +
+                           " of the laws' interface, but this program has " +
+                           VISCOPLASTIC_CONTACT_LAW_INTERFACE +
+                           "; build it again."));
     std::vector<LawDescription> laws;
     describe(laws);
     for (const LawDescription &law : laws)
-      require(law.declare && law.make,
-              "the law '" + excerpt(law.name) + "' of the shared library '" +
-                file +
-                "' has no function 'declare' or 'make' in its description.");
+      AssertThrow(
+        law.declare && law.make,
+        ExcMessage(
+          "the law '" + excerpt(law.name) + "' of the shared library '" + file +
+          "' has no function 'declare' or 'make' in its description."));
     return laws;
   }
 

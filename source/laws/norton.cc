@@ -106,27 +106,29 @@ namespace Viscoplastic
   LawDescription
   norton_description()
   {
-    return {
-      "norton",
-      "G = -E (3/2) A sigma_eq^n dev(sigma)/sigma_eq with the von Mises "
-      "stress sigma_eq: steady creep by a power law, in a tensile test "
-      "at the strain rate A sigma^n; n = 1 is maxwell with eta = 1/(3 "
-      "A). (Norton, The Creep of Steel at High Temperatures, 1929; "
-      "Odqvist, Mathematical Theory of Creep and Creep Rupture, 1966.)",
-      declare_entries({{"Rate factor", "1", "A >= 0. Unit: 1/(stress^n time)."},
-                       {"Exponent", "3", "n >= 1. Unit: 1."},
-                       {"Stress cap",
-                        "",
-                        "The von Mises stress c > 0 beyond which the power is "
-                        "continued by its tangent: well above the stress you "
-                        "expect. It has to be given. Unit: stress."}}),
-      [](const LawSection &section) {
-        require(!section.prm.get("Stress cap").empty(),
-                "'" + section.path +
+    return {"norton",
+            "G = -E (3/2) A sigma_eq^n dev(sigma)/sigma_eq with the von Mises "
+            "stress sigma_eq: steady creep by a power law, in a tensile test "
+            "at the strain rate A sigma^n; n = 1 is maxwell with eta = 1/(3 "
+            "A). (Norton, The Creep of Steel at High Temperatures, 1929; "
+            "Odqvist, Mathematical Theory of Creep and Creep Rupture, 1966.)",
+            declare_entries(
+              {{"Rate factor", "1", "A >= 0. Unit: 1/(stress^n time)."},
+               {"Exponent", "3", "n >= 1. Unit: 1."},
+               {"Stress cap",
+                "",
+                "The von Mises stress c > 0 beyond which the power is "
+                "continued by its tangent: well above the stress you "
+                "expect. It has to be given. Unit: stress."}}),
+            [](const LawSection &section) {
+              AssertThrow(
+                !section.prm.get("Stress cap").empty(),
+                ExcMessage(
+                  "'" + section.path +
                   "/Stress cap' is not given; beyond this von Mises stress the "
                   "power law is continued linearly, so choose one well above "
-                  "the stress you expect.");
-        return std::make_unique<Norton>(section);
-      }};
+                  "the stress you expect."));
+              return std::make_unique<Norton>(section);
+            }};
   }
 } // namespace Viscoplastic

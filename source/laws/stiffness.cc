@@ -73,12 +73,14 @@ namespace Viscoplastic
                             column = std::to_string(j + 1);
           // Rounding of matrices that a program has written is no asymmetry.
           // Written so that NaN is refused, too.
-          require(std::fabs(voigt(i, j) - voigt(j, i)) <= 1e-8 * scale &&
-                    std::isfinite(scale),
-                  "The Voigt matrix has " + as_text(voigt(i, j)) + " in row " +
-                    row + ", column " + column + ", and " +
-                    as_text(voigt(j, i)) + " in row " + column + ", column " +
-                    row + "; it must be symmetric and finite.");
+          AssertThrow(std::fabs(voigt(i, j) - voigt(j, i)) <= 1e-8 * scale &&
+                        std::isfinite(scale),
+                      ExcMessage("The Voigt matrix has " +
+                                 as_text(voigt(i, j)) + " in row " + row +
+                                 ", column " + column + ", and " +
+                                 as_text(voigt(j, i)) + " in row " + column +
+                                 ", column " + row +
+                                 "; it must be symmetric and finite."));
         }
     require_in_range("The norm of the Voigt matrix",
                      scale,
@@ -95,11 +97,12 @@ namespace Viscoplastic
                        [axes[j].second] = (voigt(i, j) + voigt(j, i)) / 2;
 
     const Spectrum eigen = spectrum(data->stiffness);
-    require(eigen.values[0] > 1e-12 * eigen.values[5],
-            "The smallest eigenvalue of the elastic tensor that the Voigt "
-            "matrix gives is " +
-              as_text(eigen.values[0]) + ", the largest " +
-              as_text(eigen.values[5]) + "; it must be positive definite.");
+    AssertThrow(
+      eigen.values[0] > 1e-12 * eigen.values[5],
+      ExcMessage("The smallest eigenvalue of the elastic tensor that the Voigt "
+                 "matrix gives is " +
+                 as_text(eigen.values[0]) + ", the largest " +
+                 as_text(eigen.values[5]) + "; it must be positive definite."));
     for (unsigned int mode = 0; mode < 6; ++mode)
       data->compliance += outer_product(eigen.modes[mode], eigen.modes[mode]) /
                           eigen.values[mode];

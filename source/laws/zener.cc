@@ -211,10 +211,11 @@ namespace Viscoplastic
              {section, "Relaxation time", LawParameter::Range::positive}})
       {
         for (const auto modulus : {youngs_modulus, poissons_ratio})
-          require(!parameters[modulus].depends_on_time(),
-                  "'" + parameters[modulus].get_name() +
-                    "' depends on t; elastic moduli must be functions of "
-                    "position only.");
+          AssertThrow(!parameters[modulus].depends_on_time(),
+                      ExcMessage(
+                        "'" + parameters[modulus].get_name() +
+                        "' depends on t; elastic moduli must be functions of "
+                        "position only."));
       }
 
       void

@@ -93,18 +93,22 @@ namespace Viscoplastic
       if (!mapped && !rotated && !shifted)
         return;
       for (const types::manifold_id id : triangulation.get_manifold_ids())
-        require(id == numbers::flat_manifold_id,
-                "'Geometry/Coordinates', 'Rotation angle' and 'Translation' "
-                "apply to meshes with straight edges only; '" +
-                  geometry.generator + "' has curved ones.");
+        AssertThrow(
+          id == numbers::flat_manifold_id,
+          ExcMessage(
+            "'Geometry/Coordinates', 'Rotation angle' and 'Translation' "
+            "apply to meshes with straight edges only; '" +
+            geometry.generator + "' has curved ones."));
       if (mapped)
         {
           const VectorExpression<dim> coordinates(geometry.coordinates,
                                                   dim,
                                                   "Geometry/Coordinates");
-          require(!coordinates.depends_on_time(),
-                  "'Geometry/Coordinates' depends on t, but the mesh does not "
-                  "change with time.");
+          AssertThrow(
+            !coordinates.depends_on_time(),
+            ExcMessage(
+              "'Geometry/Coordinates' depends on t, but the mesh does not "
+              "change with time."));
           GridTools::transform(
             [&coordinates](const Point<dim> &x) {
               return Point<dim>(coordinates.vector(x, 0.));
@@ -120,8 +124,9 @@ namespace Viscoplastic
             {
               const Point<3> axis = parse_point<3>(geometry.rotation_axis,
                                                    "Geometry/Rotation axis");
-              require(axis.norm() > 0.,
-                      "'Geometry/Rotation axis' must not be zero.");
+              AssertThrow(axis.norm() > 0.,
+                          ExcMessage(
+                            "'Geometry/Rotation axis' must not be zero."));
               GridTools::rotate(Tensor<1, 3>(axis / axis.norm()),
                                 angle,
                                 triangulation);

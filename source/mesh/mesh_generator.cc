@@ -96,11 +96,12 @@ namespace Viscoplastic
             }
         }
       constexpr unsigned int most = 10000000;
-      require(!is_negative && total <= most,
-              "'Geometry/Arguments' = " + geometry.arguments + " asks for " +
-                (is_negative ? numbers : as_text(total)) +
-                " cells; possible are 1 to " + std::to_string(most) +
-                " (refinements make more).");
+      AssertThrow(!is_negative && total <= most,
+                  ExcMessage(
+                    "'Geometry/Arguments' = " + geometry.arguments +
+                    " asks for " + (is_negative ? numbers : as_text(total)) +
+                    " cells; possible are 1 to " + std::to_string(most) +
+                    " (refinements make more)."));
       check_mesh_size(dim,
                       total,
                       total,
@@ -142,9 +143,11 @@ namespace Viscoplastic
         return; // deal.II says it
       const auto lists = Utilities::split_string_list(arguments[0], ';');
       const auto refuse_unless = [&](const bool good, const std::string &what) {
-        require(good,
-                "'Geometry/Arguments' = " + excerpt(geometry.arguments) +
-                  ": '" + excerpt(arguments[0]) + "' has to be " + what + ".");
+        AssertThrow(good,
+                    ExcMessage(
+                      "'Geometry/Arguments' = " + excerpt(geometry.arguments) +
+                      ": '" + excerpt(arguments[0]) + "' has to be " + what +
+                      "."));
       };
       const std::string n = std::to_string(dim);
       if (lists.size() < 2)
@@ -260,9 +263,11 @@ namespace Viscoplastic
                  "' refuses the arguments '" + excerpt(geometry.arguments) +
                  "': " + why);
         }
-      require(triangulation.all_reference_cells_are_hyper_cube(),
-              "The mesh must consist of quadrilaterals or hexahedra; simplices "
-              "are not supported.");
+      AssertThrow(
+        triangulation.all_reference_cells_are_hyper_cube(),
+        ExcMessage(
+          "The mesh must consist of quadrilaterals or hexahedra; simplices "
+          "are not supported."));
     }
 
 
@@ -275,11 +280,12 @@ namespace Viscoplastic
                     const std::vector<std::string>            &arguments,
                     parallel::distributed::Triangulation<dim> &triangulation)
     {
-      require(generators.size() == arguments.size(),
-              "'Geometry/Generator' has " + std::to_string(generators.size()) +
-                " bodies, but 'Arguments' are those of " +
-                std::to_string(arguments.size()) +
-                "; both are lists separated by `|'.");
+      AssertThrow(generators.size() == arguments.size(),
+                  ExcMessage("'Geometry/Generator' has " +
+                             std::to_string(generators.size()) +
+                             " bodies, but 'Arguments' are those of " +
+                             std::to_string(arguments.size()) +
+                             "; both are lists separated by `|'."));
       std::vector<Point<dim>>                     vertices;
       std::vector<CellData<dim>>                  cells;
       SubCellData                                 faces;
@@ -299,12 +305,13 @@ namespace Viscoplastic
               {
                 new_id[id] = manifolds.size();
                 manifolds.push_back(body.get_manifold(id).clone());
-                require(
+                AssertThrow(
                   dynamic_cast<const TransfiniteInterpolationManifold<dim> *>(
                     manifolds.back().get()) == nullptr,
-                  "The mesh generator '" + excerpt(generators[b]) +
+                  ExcMessage(
+                    "The mesh generator '" + excerpt(generators[b]) +
                     "' cannot be one of several bodies, since it interpolates "
-                    "between curved edges; use a mesh file.");
+                    "between curved edges; use a mesh file."));
               }
           auto [body_vertices, body_cells, body_faces] =
             GridTools::get_coarse_mesh_description(body);

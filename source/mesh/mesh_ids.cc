@@ -52,12 +52,13 @@ namespace Viscoplastic
             const Point<dim> x = object.intermediate_point(
               xi + 0.99 * (GeometryInfo<structdim>::unit_cell_vertex(v) - xi));
             const unsigned int id_here = value(x, old_id);
-            require(id_here == id,
-                    "'" + entry + "' gives " + std::to_string(id) + " and " +
-                      std::to_string(id_here) + " in the " + what +
-                      " with the center (" + as_text(center) +
-                      "); an id may change only between " + what +
-                      "s of the coarse mesh.");
+            AssertThrow(id_here == id,
+                        ExcMessage("'" + entry + "' gives " +
+                                   std::to_string(id) + " and " +
+                                   std::to_string(id_here) + " in the " + what +
+                                   " with the center (" + as_text(center) +
+                                   "); an id may change only between " + what +
+                                   "s of the coarse mesh."));
           }
         return id;
       }

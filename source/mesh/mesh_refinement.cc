@@ -33,18 +33,20 @@ namespace Viscoplastic
         {
           std::smatch match;
           // Matching takes a stack as deep as the text is long.
-          require(part.size() < 100 && std::regex_match(part, match, pair),
-                  entry +
-                    " consists of `boundary id: times' separated by commas, "
-                    "but has '" +
-                    excerpt(part) + "'.");
+          AssertThrow(
+            part.size() < 100 && std::regex_match(part, match, pair),
+            ExcMessage(entry +
+                       " consists of `boundary id: times' separated by commas, "
+                       "but has '" +
+                       excerpt(part) + "'."));
           const types::boundary_id id = std::stoul(match[1]);
-          require(ids.count(id) == 1,
-                  entry + " names the boundary id " + std::to_string(id) +
-                    ", but the mesh has the ids " + list(ids) + ".");
-          require(result.emplace(id, std::stoul(match[2])).second,
-                  entry + " names the boundary id " + std::to_string(id) +
-                    " twice.");
+          AssertThrow(ids.count(id) == 1,
+                      ExcMessage(
+                        entry + " names the boundary id " + std::to_string(id) +
+                        ", but the mesh has the ids " + list(ids) + "."));
+          AssertThrow(result.emplace(id, std::stoul(match[2])).second,
+                      ExcMessage(entry + " names the boundary id " +
+                                 std::to_string(id) + " twice."));
         }
       return result;
     }
@@ -97,11 +99,12 @@ namespace Viscoplastic
     for (const auto &pair : times)
       local = std::max(local, pair.second);
     const unsigned int n_levels = 18;
-    require(global <= n_levels && global + local <= n_levels,
-            "'Geometry/Global refinements' = " + std::to_string(global) +
-              " with " + std::to_string(local) +
-              " further ones at boundaries; together, " +
-              std::to_string(n_levels) + " are possible.");
+    AssertThrow(global <= n_levels && global + local <= n_levels,
+                ExcMessage(
+                  "'Geometry/Global refinements' = " + std::to_string(global) +
+                  " with " + std::to_string(local) +
+                  " further ones at boundaries; together, " +
+                  std::to_string(n_levels) + " are possible."));
     const MPI_Comm comm = triangulation.get_communicator();
     if (global > 0)
       check_mesh_size(dim,

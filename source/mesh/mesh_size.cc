@@ -78,18 +78,20 @@ namespace Viscoplastic
     std::ostringstream message;
     message << cause << " would make about " << n_cells << " cells and "
             << n_unknowns << " unknowns, ";
-    require(n_unknowns <= most,
-            message.str() + "more than can be numbered (" +
-              std::to_string(std::numeric_limits<int>::max()) + ").");
-    require(n_entries / n_ranks <= most,
-            message.str() + "which is too much for " +
-              (n_ranks == 1 ? "one MPI rank" :
-                              std::to_string(n_ranks) + " MPI ranks") +
-              ", whose matrix would have more entries than can be numbered; "
-              "take at least " +
-              std::to_string(
-                static_cast<unsigned int>(std::ceil(n_entries / most))) +
-              ".");
+    AssertThrow(n_unknowns <= most,
+                ExcMessage(message.str() + "more than can be numbered (" +
+                           std::to_string(std::numeric_limits<int>::max()) +
+                           ")."));
+    AssertThrow(
+      n_entries / n_ranks <= most,
+      ExcMessage(
+        message.str() + "which is too much for " +
+        (n_ranks == 1 ? "one MPI rank" :
+                        std::to_string(n_ranks) + " MPI ranks") +
+        ", whose matrix would have more entries than can be numbered; "
+        "take at least " +
+        std::to_string(static_cast<unsigned int>(std::ceil(n_entries / most))) +
+        "."));
 
     // Measured: mesh and spaces take 760 (2D) and 1280 bytes (3D) a cell. The
     // solver takes several times as much: this refuses only what must fail.
@@ -110,8 +112,8 @@ namespace Viscoplastic
     else
       message << " GB; --check says what a mesh needs.";
     // Computers may differ, and all ranks have to throw.
-    require(!Utilities::MPI::logical_or(n_bytes > n_possible, communicator),
-            message.str());
+    AssertThrow(!Utilities::MPI::logical_or(n_bytes > n_possible, communicator),
+                ExcMessage(message.str()));
   }
 
 

@@ -38,9 +38,9 @@ namespace Viscoplastic
     for (const std::string &library :
          Utilities::split_string_list(line->value, ','))
       {
-        require(!library.empty(),
-                line->origin() + ": '" + shared_libraries_entry +
-                  "' has an empty name between commas.");
+        AssertThrow(!library.empty(),
+                    ExcMessage(line->origin() + ": '" + shared_libraries_entry +
+                               "' has an empty name between commas."));
         shared_libraries.push_back(line->locate(library));
       }
     try
@@ -156,13 +156,15 @@ namespace Viscoplastic
           const std::string path = line.section + line.name;
           const Tree &entry = declared.get_child(Tree::path_type(path, '/'));
           // The record of a run has the entries with their defaults.
-          require(line.value == entry.get<std::string>("default_value"),
-                  line.origin() + ": '" + path +
-                    "' cannot be set beside 'Material " +
-                    std::to_string(materials.begin()->first) +
-                    "'; where materials have numbers, each is described in its "
-                    "own subsection, and 'Material' has only 'Volumetric "
-                    "integration' and 'Stress history'.");
+          AssertThrow(
+            line.value == entry.get<std::string>("default_value"),
+            ExcMessage(
+              line.origin() + ": '" + path +
+              "' cannot be set beside 'Material " +
+              std::to_string(materials.begin()->first) +
+              "'; where materials have numbers, each is described in its "
+              "own subsection, and 'Material' has only 'Volumetric "
+              "integration' and 'Stress history'."));
         }
   }
 
@@ -197,28 +199,37 @@ namespace Viscoplastic
     if (refinement.strategy == RefinementStrategy::automatic)
       refinement.strategy =
         has_tolerance ? RefinementStrategy::residual : RefinementStrategy::none;
-    require(error_control.quantity.empty() || error_control.error_estimator,
-            "'Error control/Quantity' needs the estimate of the error; set "
-            "'Error control/Error bar' = true.");
-    require(error_control.quantity.empty() ||
-              refinement.strategy != RefinementStrategy::kelly,
-            "'Error control/Quantity' refines by residuals; set 'Mesh "
-            "refinement/Strategy' = residual, or none for a fixed mesh.");
+    AssertThrow(
+      error_control.quantity.empty() || error_control.error_estimator,
+      ExcMessage(
+        "'Error control/Quantity' needs the estimate of the error; set "
+        "'Error control/Error bar' = true."));
+    AssertThrow(
+      error_control.quantity.empty() ||
+        refinement.strategy != RefinementStrategy::kelly,
+      ExcMessage("'Error control/Quantity' refines by residuals; set 'Mesh "
+                 "refinement/Strategy' = residual, or none for a fixed mesh."));
     if (!has_tolerance)
       return;
-    require(error_control.tolerance < 1.,
-            "'Error control/Tolerance' = 1 lets the error be as large as the "
-            "solution; 1 % is 0.01.");
-    require(error_control.error_estimator,
-            "'Error control/Tolerance' needs an estimate of the error; set "
-            "'Error control/Error bar' = true.");
-    require(!step_control.is_on(),
-            "'Error control/Tolerance' chooses the steps, too; set 'Step "
-            "control/Tolerance' = 0.");
-    require(
+    AssertThrow(
+      error_control.tolerance < 1.,
+      ExcMessage(
+        "'Error control/Tolerance' = 1 lets the error be as large as the "
+        "solution; 1 % is 0.01."));
+    AssertThrow(
+      error_control.error_estimator,
+      ExcMessage(
+        "'Error control/Tolerance' needs an estimate of the error; set "
+        "'Error control/Error bar' = true."));
+    AssertThrow(!step_control.is_on(),
+                ExcMessage(
+                  "'Error control/Tolerance' chooses the steps, too; set 'Step "
+                  "control/Tolerance' = 0."));
+    AssertThrow(
       refinement.strategy != RefinementStrategy::kelly,
-      "'Error control/Tolerance' refines by the estimate of the error; set "
-      "'Mesh refinement/Strategy' = residual, or none for a fixed mesh.");
+      ExcMessage(
+        "'Error control/Tolerance' refines by the estimate of the error; set "
+        "'Mesh refinement/Strategy' = residual, or none for a fixed mesh."));
   }
 
 
@@ -263,10 +274,11 @@ namespace Viscoplastic
       locate_mesh_file(lines);
     resolve_automatic_choices();
     refinement.check();
-    require(solver.contact_tolerance == 0. || solver.contact_tolerance >= 1e-14,
-            "'Solver/Contact tolerance' = " +
-              as_text(solver.contact_tolerance) +
-              " is below rounding; it must be 0 or lie between 1e-14 and 0.1.");
+    AssertThrow(
+      solver.contact_tolerance == 0. || solver.contact_tolerance >= 1e-14,
+      ExcMessage(
+        "'Solver/Contact tolerance' = " + as_text(solver.contact_tolerance) +
+        " is below rounding; it must be 0 or lie between 1e-14 and 0.1."));
   }
 
 

@@ -45,8 +45,9 @@ namespace Viscoplastic
                                           "is binary, not a parameter file" :
         input ? "is too long for a parameter file" :
                 "";
-      require(fault.empty(),
-              called + " '" + excerpt(file, 200) + "' " + fault + '.');
+      AssertThrow(fault.empty(),
+                  ExcMessage(called + " '" + excerpt(file, 200) + "' " + fault +
+                             '.'));
       // Some editors begin a file with a byte order mark.
       if (text.compare(0, 3, "\xEF\xBB\xBF") == 0)
         text.erase(0, 3);
@@ -82,11 +83,12 @@ namespace Viscoplastic
           (kind != "Boundary" && kind != "Material" && kind != "Table"))
         return name;
       const std::string id = Utilities::trim(name.substr(kind.size()));
-      require(Patterns::Integer(0, largest_id).match(id),
-              origin + ": '" + excerpt(id) + "' in the subsection '" +
-                excerpt(name) +
-                "' is no id; it must be a whole number from 0 to " +
-                std::to_string(largest_id) + ".");
+      AssertThrow(Patterns::Integer(0, largest_id).match(id),
+                  ExcMessage(
+                    origin + ": '" + excerpt(id) + "' in the subsection '" +
+                    excerpt(name) +
+                    "' is no id; it must be a whole number from 0 to " +
+                    std::to_string(largest_id) + "."));
       return kind + ' ' + std::to_string(std::stoul(id));
     }
 
@@ -119,13 +121,13 @@ namespace Viscoplastic
         std::istringstream input(content(file, caller));
         std::error_code    error;
         open_files.push_back(fs::weakly_canonical(file, error));
-        require(std::find(open_files.begin(),
-                          open_files.end() - 1,
-                          open_files.back()) == open_files.end() - 1,
-                caller + " '" + file + "' includes itself.");
-        require(++n_files <= max_files,
-                caller + " '" + file + "' is one of more than " +
-                  std::to_string(max_files) + ".");
+        AssertThrow(std::find(open_files.begin(),
+                              open_files.end() - 1,
+                              open_files.back()) == open_files.end() - 1,
+                    ExcMessage(caller + " '" + file + "' includes itself."));
+        AssertThrow(++n_files <= max_files,
+                    ExcMessage(caller + " '" + file + "' is one of more than " +
+                               std::to_string(max_files) + "."));
         read(input, file, 1);
         open_files.pop_back();
       }
@@ -135,20 +137,26 @@ namespace Viscoplastic
       {
         const std::string where  = "--set '" + excerpt(text) + "'";
         const std::size_t equals = text.find('=');
-        require(equals != std::string::npos,
-                where + ": there is no `='; it must be 'Section/Entry=value'.");
+        AssertThrow(equals != std::string::npos,
+                    ExcMessage(
+                      where +
+                      ": there is no `='; it must be 'Section/Entry=value'."));
         // The record of the run must be readable again.
-        require(text.find_first_of("#\n\r") == std::string::npos &&
-                  text.back() != '\\',
-                where + ": a value cannot contain `#' or line breaks, nor end "
-                        "with a backslash.");
+        AssertThrow(text.find_first_of("#\n\r") == std::string::npos &&
+                      text.back() != '\\',
+                    ExcMessage(
+                      where +
+                      ": a value cannot contain `#' or line breaks, nor end "
+                      "with a backslash."));
         std::istringstream names(text.substr(0, equals) + '/');
         std::string        name, opening, assignment, closing;
         while (std::getline(names, name, '/'))
           {
-            require(!Utilities::trim(name).empty(),
-                    where +
-                      ": a name is empty; it must be 'Section/Entry=value'.");
+            AssertThrow(
+              !Utilities::trim(name).empty(),
+              ExcMessage(
+                where +
+                ": a name is empty; it must be 'Section/Entry=value'."));
             if (!assignment.empty())
               {
                 opening += "subsection " + assignment + " #\n";
@@ -201,10 +209,12 @@ namespace Viscoplastic
             line.origin() + ": the included file");
         if ((word == "subsection" || word == "SUBSECTION") && !rest.empty())
           {
-            require(std::count(section.begin(), section.end(), '/') < max_depth,
-                    line.origin() + ": more than " + std::to_string(max_depth) +
-                      " subsections are inside each other; are there as many "
-                      "lines `end' as lines `subsection'?");
+            AssertThrow(
+              std::count(section.begin(), section.end(), '/') < max_depth,
+              ExcMessage(
+                line.origin() + ": more than " + std::to_string(max_depth) +
+                " subsections are inside each other; are there as many "
+                "lines `end' as lines `subsection'?"));
             line.name =
               section.empty() ? with_plain_id(rest, line.origin()) : rest;
             line.text       = "subsection " + line.name;
@@ -214,9 +224,10 @@ namespace Viscoplastic
           }
         else if (word == "end" || word == "END")
           {
-            require(!source.open.empty(),
-                    line.origin() + ": there is no open subsection that this "
-                                    "`end' could close.");
+            AssertThrow(!source.open.empty(),
+                        ExcMessage(line.origin() +
+                                   ": there is no open subsection that this "
+                                   "`end' could close."));
             section = source.open.back().section;
             source.open.pop_back();
           }
@@ -228,20 +239,25 @@ namespace Viscoplastic
             const std::string path = section + line.name;
             const auto [earlier, is_new] =
               source.set.emplace(path, line.number);
-            require(is_new,
-                    "'" + excerpt(path) + "' is set twice in '" + source.name +
-                      "', in lines " + std::to_string(earlier->second) +
-                      " and " + std::to_string(line.number) +
-                      "; keep one of them, or move one to a file of its own to "
-                      "override the other.");
+            AssertThrow(
+              is_new,
+              ExcMessage(
+                "'" + excerpt(path) + "' is set twice in '" + source.name +
+                "', in lines " + std::to_string(earlier->second) + " and " +
+                std::to_string(line.number) +
+                "; keep one of them, or move one to a file of its own to "
+                "override the other."));
             // To ParameterHandler that is a list of runs, left unread.
-            require(line.value.find('{') == std::string::npos,
-                    line.origin() + ": '" + excerpt(path) + "' is '" +
-                      excerpt(line.value) + "'; a value cannot contain `{'.");
-            require(is_utf8(line.value),
-                    line.origin() + ": '" + excerpt(path) +
-                      "' has bytes that are no text in UTF-8; save the file in "
-                      "that encoding.");
+            AssertThrow(line.value.find('{') == std::string::npos,
+                        ExcMessage(line.origin() + ": '" + excerpt(path) +
+                                   "' is '" + excerpt(line.value) +
+                                   "'; a value cannot contain `{'."));
+            AssertThrow(
+              is_utf8(line.value),
+              ExcMessage(
+                line.origin() + ": '" + excerpt(path) +
+                "' has bytes that are no text in UTF-8; save the file in "
+                "that encoding."));
           }
         lines.push_back(std::move(line));
       }
@@ -258,13 +274,14 @@ namespace Viscoplastic
       number == 0 ? given : fs::path(source).parent_path() / given;
     std::error_code error;
     const fs::path  found = fs::exists(beside, error) ? beside : given;
-    require(fs::exists(found, error),
-            origin() + ": '" + section + name + "' is '" + excerpt(value) +
-              "', but there is no such file" +
-              (value == file ? "" : " as '" + excerpt(file) + "'") +
-              (beside == given ? "." :
-                                 ", neither beside '" + source +
-                                   "' nor in the working directory."));
+    AssertThrow(fs::exists(found, error),
+                ExcMessage(
+                  origin() + ": '" + section + name + "' is '" +
+                  excerpt(value) + "', but there is no such file" +
+                  (value == file ? "" : " as '" + excerpt(file) + "'") +
+                  (beside == given ? "." :
+                                     ", neither beside '" + source +
+                                       "' nor in the working directory.")));
     return fs::absolute(found).lexically_normal().string();
   }
 

@@ -264,14 +264,16 @@ namespace Viscoplastic
   void
   RefinementParameters::check() const
   {
-    require(minimal_level <= maximal_level,
-            "'Mesh refinement/Minimal level' = " +
-              std::to_string(minimal_level) +
-              " must not exceed 'Maximal level' = " +
-              std::to_string(maximal_level) + ".");
-    require(refinement_fraction + coarsening_fraction <= 1.,
-            "'Mesh refinement/Refinement fraction' and 'Coarsening fraction' "
-            "must add up to at most 1.");
+    AssertThrow(minimal_level <= maximal_level,
+                ExcMessage("'Mesh refinement/Minimal level' = " +
+                           std::to_string(minimal_level) +
+                           " must not exceed 'Maximal level' = " +
+                           std::to_string(maximal_level) + "."));
+    AssertThrow(
+      refinement_fraction + coarsening_fraction <= 1.,
+      ExcMessage(
+        "'Mesh refinement/Refinement fraction' and 'Coarsening fraction' "
+        "must add up to at most 1."));
   }
 
 

@@ -191,10 +191,11 @@ namespace Viscoplastic
                 const Units       &units)
   {
     for (const std::string name : {"\u00B0C", "degC"})
-      require(text.find(name) == std::string::npos,
-              "'" + name +
-                "' is no unit here: temperatures are absolute, 20 "
-                "\u00B0C is `293.15 K', and differences are in K");
+      AssertThrow(text.find(name) == std::string::npos,
+                  ExcMessage(
+                    "'" + name +
+                    "' is no unit here: temperatures are absolute, 20 "
+                    "\u00B0C is `293.15 K', and differences are in K"));
     std::string result;
     std::size_t copied = 0;
     for (const NumberWithUnit &number : numbers_with_units(text))
@@ -202,9 +203,9 @@ namespace Viscoplastic
         const auto &[unit, end, unknown_name] = number.found;
         const std::string digits =
           text.substr(number.begin, number.end_of_number - number.begin);
-        require(!number.lacks_blank,
-                "a blank must stand between '" + excerpt(digits) +
-                  "' and its unit");
+        AssertThrow(!number.lacks_blank,
+                    ExcMessage("a blank must stand between '" +
+                               excerpt(digits) + "' and its unit"));
         if (!unknown_name.empty())
           refuse(
             "there is no unit '" + excerpt(unknown_name) + "'" +
@@ -212,17 +213,19 @@ namespace Viscoplastic
                          names_of_units(entry.is_wall_time ? entry.dimension :
                                                              std::nullopt),
                          "; units are " + enumeration(names_of_units(), 40)));
-        require(entry.is_wall_time || units.are_declared(),
-                "'" + excerpt(text.substr(number.begin, end - number.begin)) +
-                  "' has a unit, but the scene says none: declare `Length', "
-                  "`Time' and `Stress' in `subsection Units'");
+        AssertThrow(
+          entry.is_wall_time || units.are_declared(),
+          ExcMessage("'" +
+                     excerpt(text.substr(number.begin, end - number.begin)) +
+                     "' has a unit, but the scene says none: declare `Length', "
+                     "`Time' and `Stress' in `subsection Units'"));
         const double factor =
           unit.si / (entry.is_wall_time ? 1. : units.si(unit.dimension));
         // Not by std::stod(), which throws also where a number is tiny.
         const double value = factor * std::strtod(digits.c_str(), nullptr);
-        require(std::isfinite(value),
-                "'" + excerpt(digits) +
-                  "' leaves the range of floating-point numbers");
+        AssertThrow(std::isfinite(value),
+                    ExcMessage("'" + excerpt(digits) +
+                               "' leaves the range of floating-point numbers"));
         result += text.substr(copied, number.begin - copied) +
                   (std::abs(factor - 1.) < 1e-14 ? digits : shortest(value));
         copied = end;
@@ -233,7 +236,7 @@ namespace Viscoplastic
     if (!wrong.empty() && entry.exponent)
       wrong += " with '" + entry.entry_of_exponent +
                "' = " + shortest(*entry.exponent);
-    require(wrong.empty(), wrong);
+    AssertThrow(wrong.empty(), ExcMessage(wrong));
     return result + text.substr(copied);
   }
 
@@ -286,9 +289,9 @@ namespace Viscoplastic
                 {
                   const std::size_t separator =
                     line.value.find_last_of(":,", number.begin);
-                  require(separator == std::string::npos ||
-                            line.value[separator] == ',',
-                          "the number of steps has no unit");
+                  AssertThrow(separator == std::string::npos ||
+                                line.value[separator] == ',',
+                              ExcMessage("the number of steps has no unit"));
                 }
             const std::string value = without_units(line.value, *unit, units);
             as_written[path]        = line.value;

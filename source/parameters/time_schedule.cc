@@ -57,19 +57,23 @@ namespace Viscoplastic
             {
               n_steps = 0; // refused below
             }
-          require(n_steps > 0,
-                  "'Time/Phases': '" + excerpt(phase) +
-                    "' is not of the form `end time: number of steps' with a "
-                    "positive number of steps.");
+          AssertThrow(
+            n_steps > 0,
+            ExcMessage(
+              "'Time/Phases': '" + excerpt(phase) +
+              "' is not of the form `end time: number of steps' with a "
+              "positive number of steps."));
           const std::string of_phase = " of '" + excerpt(phase) + "'";
-          require(std::isfinite(end) && end > start,
-                  "'Time/Phases': the end time" + of_phase +
-                    " must be finite and lie after " + number(start, 15) + ".");
+          AssertThrow(std::isfinite(end) && end > start,
+                      ExcMessage("'Time/Phases': the end time" + of_phase +
+                                 " must be finite and lie after " +
+                                 number(start, 15) + "."));
           const double step = (end - start) / n_steps;
-          require(step > 1e-14 * end,
-                  "'Time/Phases': the steps" + of_phase +
-                    " are shorter than 1e-14 of its end time, which is what "
-                    "rounding leaves of times; take fewer steps.");
+          AssertThrow(
+            step > 1e-14 * end,
+            ExcMessage("'Time/Phases': the steps" + of_phase +
+                       " are shorter than 1e-14 of its end time, which is what "
+                       "rounding leaves of times; take fewer steps."));
           require_in_range("'Time/Phases': the end time" + of_phase,
                            end,
                            least_time,
@@ -79,15 +83,18 @@ namespace Viscoplastic
                            least_time,
                            largest_time);
           n_all_steps += n_steps;
-          require(n_all_steps <= max_n_steps,
-                  "'Time/Phases' has more than 1e9 steps up to '" +
-                    excerpt(phase) + "'; take fewer.");
+          AssertThrow(n_all_steps <= max_n_steps,
+                      ExcMessage(
+                        "'Time/Phases' has more than 1e9 steps up to '" +
+                        excerpt(phase) + "'; take fewer."));
           phases.push_back({start, end, static_cast<unsigned int>(n_steps)});
           start = end;
         }
-      require(!phases.empty(),
-              "'Time/Phases' is empty; give at least one phase as `end time: "
-              "number of steps'.");
+      AssertThrow(
+        !phases.empty(),
+        ExcMessage(
+          "'Time/Phases' is empty; give at least one phase as `end time: "
+          "number of steps'."));
       return phases;
     }
   } // namespace

@@ -214,7 +214,7 @@ namespace Viscoplastic
           }
       }
       const auto check = [&]() {
-        require(good, "HDF5 cannot write '" + file + "'.");
+        AssertThrow(good, ExcMessage("HDF5 cannot write '" + file + "'."));
       };
       if (!ranks)
         {

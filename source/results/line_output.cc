@@ -51,7 +51,8 @@ namespace Viscoplastic
         {
           require_writable_file(name);
           files.emplace_back(name);
-          require(files.back(), "The file '" + name + "' cannot be written.");
+          AssertThrow(files.back(),
+                      ExcMessage("The file '" + name + "' cannot be written."));
         }
     });
   }
@@ -121,8 +122,9 @@ namespace Viscoplastic
               file << '\n';
             }
           file << std::flush;
-          require(file,
-                  "Writing to '" + names[i] + "' failed; is the disk full?");
+          AssertThrow(file,
+                      ExcMessage("Writing to '" + names[i] +
+                                 "' failed; is the disk full?"));
         });
       }
   }

@@ -116,10 +116,11 @@ namespace Viscoplastic
         std::error_code none;
         if (!std::filesystem::is_regular_file(path + name, none))
           continue;
-        require(is_own(path + name, beginning),
-                "The results would overwrite '" + path + name +
-                  "', which this program has not written; choose another "
-                  "'Output/Directory'.");
+        AssertThrow(is_own(path + name, beginning),
+                    ExcMessage(
+                      "The results would overwrite '" + path + name +
+                      "', which this program has not written; choose another "
+                      "'Output/Directory'."));
       }
   }
 
@@ -223,10 +224,11 @@ namespace Viscoplastic
   {
     std::error_code error;
     std::filesystem::create_directories(path, error);
-    require(
+    AssertThrow(
       !error,
-      "The results directory '" + path +
-        "' cannot be written; change 'Output/Directory' or its permissions.");
+      ExcMessage(
+        "The results directory '" + path +
+        "' cannot be written; change 'Output/Directory' or its permissions."));
   }
 
 

@@ -21,7 +21,7 @@ namespace Viscoplastic
   {
     require_writable_file(name);
     file.open(name);
-    require(file, "The file '" + name + "' cannot be written.");
+    AssertThrow(file, ExcMessage("The file '" + name + "' cannot be written."));
   }
 
 
@@ -42,9 +42,10 @@ namespace Viscoplastic
         ++result.n_rows;
       else
         break;
-    require(result.n_rows > 0,
-            "The rows up to step " + std::to_string(last_step) +
-              ", with which the run would go on, are not in '" + name + "'.");
+    AssertThrow(result.n_rows > 0,
+                ExcMessage("The rows up to step " + std::to_string(last_step) +
+                           ", with which the run would go on, are not in '" +
+                           name + "'."));
     return result;
   }
 
@@ -56,7 +57,8 @@ namespace Viscoplastic
     std::error_code error;
     std::filesystem::resize_file(name, beginning.size, error);
     std::ofstream file(name, std::ios::app);
-    require(!error && file, "The file '" + name + "' cannot be written.");
+    AssertThrow(!error && file,
+                ExcMessage("The file '" + name + "' cannot be written."));
     return file;
   }
 
@@ -67,9 +69,10 @@ namespace Viscoplastic
     : name(file_name)
   {
     const TableBeginning beginning = beginning_of_table(name, last_step);
-    require(beginning.n_rows == last_step + 1,
-            "The rows up to step " + std::to_string(last_step) +
-              ", with which the run would go on, are not in '" + name + "'.");
+    AssertThrow(beginning.n_rows == last_step + 1,
+                ExcMessage("The rows up to step " + std::to_string(last_step) +
+                           ", with which the run would go on, are not in '" +
+                           name + "'."));
     for (const std::string &column :
          Utilities::split_string_list(beginning.header))
       columns.push_back(without_label(column));
@@ -98,9 +101,10 @@ namespace Viscoplastic
         columns = names;
         file << header << '\n';
       }
-    require(columns == names,
-            "The columns of '" + name +
-              "' are not those of this run, which cannot go on with it.");
+    AssertThrow(columns == names,
+                ExcMessage(
+                  "The columns of '" + name +
+                  "' are not those of this run, which cannot go on with it."));
     // A result that is none must not pass for one. No limit is imposed where
     // nothing flows.
     for (std::size_t i = 0; i < values.size(); ++i)
@@ -125,7 +129,9 @@ namespace Viscoplastic
     for (std::size_t i = 0; i < values.size(); ++i)
       file << (i == 0 ? "" : ",") << values[i];
     file << std::endl;
-    require(file, "Writing to '" + name + "' failed; is the disk full?");
+    AssertThrow(file,
+                ExcMessage("Writing to '" + name +
+                           "' failed; is the disk full?"));
   }
 
 

@@ -57,11 +57,12 @@ namespace Viscoplastic
     read_file(const std::string &argument, CommandLine &result)
     {
       std::error_code error;
-      require(argument.find('=') == std::string::npos ||
-                std::filesystem::exists(argument, error),
-              "There is no parameter file '" + excerpt(argument) +
-                "'; to give an entry a value write --set '" +
-                excerpt(argument) + "'.");
+      AssertThrow(argument.find('=') == std::string::npos ||
+                    std::filesystem::exists(argument, error),
+                  ExcMessage("There is no parameter file '" +
+                             excerpt(argument) +
+                             "'; to give an entry a value write --set '" +
+                             excerpt(argument) + "'."));
       result.files.push_back(argument);
     }
 
@@ -77,11 +78,14 @@ namespace Viscoplastic
           result.overrides.push_back(value);
           return;
         }
-      require(!value.empty(),
-              "The option --log needs the name of a file after it.");
-      require(std::filesystem::path(value).extension() != ".prm",
-              "The option --log would overwrite '" + excerpt(value) +
-                "', which looks like a parameter file; choose another name.");
+      AssertThrow(!value.empty(),
+                  ExcMessage(
+                    "The option --log needs the name of a file after it."));
+      AssertThrow(
+        std::filesystem::path(value).extension() != ".prm",
+        ExcMessage(
+          "The option --log would overwrite '" + excerpt(value) +
+          "', which looks like a parameter file; choose another name."));
       result.log = value;
     }
 
@@ -104,25 +108,27 @@ namespace Viscoplastic
           for (const auto &known : with_value)
             options.push_back(known.first);
           const std::string nearest = nearest_name(option, options);
-          require(false,
-                  "There is no option '" + excerpt(option) + "'; " +
-                    (nearest.empty() ?
-                       "the options are " + enumeration(options) + "." :
-                       "did you mean " + nearest + "?"));
+          AssertThrow(false,
+                      ExcMessage(
+                        "There is no option '" + excerpt(option) + "'; " +
+                        (nearest.empty() ?
+                           "the options are " + enumeration(options) + "." :
+                           "did you mean " + nearest + "?")));
         }
       const std::string               text   = value ? *value : "";
       const std::vector<std::string> &values = flag->second;
-      require(value == nullptr ||
-                std::find(values.begin(), values.end(), text) != values.end(),
-              "The option " + option +
-                (values.empty() ?
-                   " has no value, such as '" :
-                   " can have the value" +
-                     (values.size() > 1 ?
-                        "s " + values.front() + " and " + values.back() :
-                        ' ' + values.front()) +
-                     ", not '") +
-                excerpt(text) + "'.");
+      AssertThrow(value == nullptr ||
+                    std::find(values.begin(), values.end(), text) !=
+                      values.end(),
+                  ExcMessage("The option " + option +
+                             (values.empty() ? " has no value, such as '" :
+                                               " can have the value" +
+                                                 (values.size() > 1 ?
+                                                    "s " + values.front() +
+                                                      " and " + values.back() :
+                                                    ' ' + values.front()) +
+                                                 ", not '") +
+                             excerpt(text) + "'."));
       if (option == "--quiet")
         result.quiet = true;
       else if (option == "--verbose")
@@ -131,9 +137,9 @@ namespace Viscoplastic
         result.restart = text == "auto" ? Restart::automatic : Restart::yes;
       else
         {
-          require(of_task.empty() || of_task == option,
-                  "The options " + of_task + " and " + option +
-                    " exclude each other.");
+          AssertThrow(of_task.empty() || of_task == option,
+                      ExcMessage("The options " + of_task + " and " + option +
+                                 " exclude each other."));
           of_task           = option;
           result.with_means = text == "means";
           result.task       = option == "--help" ?
@@ -158,16 +164,19 @@ namespace Viscoplastic
       const bool reads_scene = line.task == Task::run ||
                                line.task == Task::check ||
                                line.task == Task::print_scene;
-      require(!reads_scene || !line.files.empty(),
-              "There is no parameter file among the arguments; write "
-              "viscoplastic_contact [options] scene.prm.");
-      require(line.task == Task::run || line.restart == Restart::no,
-              "The options " + of_task + " and --restart exclude each other.");
-      require(reads_scene || (describes && !line.files.empty()) ||
-                (line.files.empty() && line.overrides.empty()),
-              "The option " + of_task + " goes without " +
-                (describes ? "--set where there is no parameter file." :
-                             "parameter files and --set."));
+      AssertThrow(!reads_scene || !line.files.empty(),
+                  ExcMessage(
+                    "There is no parameter file among the arguments; write "
+                    "viscoplastic_contact [options] scene.prm."));
+      AssertThrow(line.task == Task::run || line.restart == Restart::no,
+                  ExcMessage("The options " + of_task +
+                             " and --restart exclude each other."));
+      AssertThrow(reads_scene || (describes && !line.files.empty()) ||
+                    (line.files.empty() && line.overrides.empty()),
+                  ExcMessage("The option " + of_task + " goes without " +
+                             (describes ?
+                                "--set where there is no parameter file." :
+                                "parameter files and --set.")));
     }
   } // namespace
 
@@ -207,9 +216,9 @@ namespace Viscoplastic
               }
             if (!has_value)
               {
-                require(i + 1 < arguments.size(),
-                        "The option " + option + " needs " + needed->second +
-                          " after it.");
+                AssertThrow(i + 1 < arguments.size(),
+                            ExcMessage("The option " + option + " needs " +
+                                       needed->second + " after it."));
                 value = arguments[++i];
               }
             read_option(option, value, result);

@@ -86,10 +86,11 @@ namespace Viscoplastic
       refuse("None of the " + std::to_string(remarks.size()) +
              " checkpoint(s) in '" + checkpoints.directory +
              "' can be used: " + remarks[0] + '.');
-    require(found || restart == Restart::automatic,
-            "There is no checkpoint in '" + checkpoints.directory +
-              "'; begin without --restart, or name the place in "
-              "'Checkpoint/Directory' or 'Output/Directory'.");
+    AssertThrow(found || restart == Restart::automatic,
+                ExcMessage("There is no checkpoint in '" +
+                           checkpoints.directory +
+                           "'; begin without --restart, or name the place in "
+                           "'Checkpoint/Directory' or 'Output/Directory'."));
     return found;
   }
 

@@ -164,10 +164,11 @@ namespace Viscoplastic
   {
     make_mesh(scene.parameters.geometry, triangulation);
     scene.inspect(triangulation);
-    require(!control.is_on || !scene.has_viscosity() ||
-              scene.parameters.error_control.error_estimator,
-            "'Step control/Tolerance' needs an estimate of the error; set "
-            "'Error control/Error bar' = true.");
+    AssertThrow(
+      !control.is_on || !scene.has_viscosity() ||
+        scene.parameters.error_control.error_estimator,
+      ExcMessage("'Step control/Tolerance' needs an estimate of the error; set "
+                 "'Error control/Error bar' = true."));
     control.set_has_estimate(scene.has_viscosity());
     if (announcer != nullptr)
       announcer->announce(scene);
@@ -211,19 +212,21 @@ namespace Viscoplastic
     const auto &solution = discretization.scene().exact_solution;
     if (solution && solution->makes_data)
       return;
-    require(violation.relative <= tolerance,
-            "The initial data are not in equilibrium with the loads at t = 0, "
-            "(2.12): the relative violation is " +
-              as_text(violation.relative) + ", more than " +
-              as_text(tolerance) + "; it is largest " +
-              (violation.is_axial ?
-                 "in 'Loads/Axial force'" :
-                 "at x = (" + as_text(violation.position) + "), " +
-                   (violation.boundaries.empty() ?
-                      "inside of the body" :
-                      "on boundary " + list(violation.boundaries))) +
-              "; start with loads that the initial stress balances, or set "
-              "'Initial state/Equilibrate'.");
+    AssertThrow(
+      violation.relative <= tolerance,
+      ExcMessage(
+        "The initial data are not in equilibrium with the loads at t = 0, "
+        "(2.12): the relative violation is " +
+        as_text(violation.relative) + ", more than " + as_text(tolerance) +
+        "; it is largest " +
+        (violation.is_axial ?
+           "in 'Loads/Axial force'" :
+           "at x = (" + as_text(violation.position) + "), " +
+             (violation.boundaries.empty() ?
+                "inside of the body" :
+                "on boundary " + list(violation.boundaries))) +
+        "; start with loads that the initial stress balances, or set "
+        "'Initial state/Equilibrate'."));
   }
 
 

@@ -24,9 +24,10 @@ namespace Viscoplastic
     {
       choices.replace(choices.rfind('|'), 1, " or ");
       choices.erase(0, choices.find('|') + 1);
-      require(is_given,
-              "'" + entry(id, name) + "' is missing; it must be " +
-                Utilities::replace_in_string(choices, "|", ", ") + ".");
+      AssertThrow(is_given,
+                  ExcMessage(
+                    "'" + entry(id, name) + "' is missing; it must be " +
+                    Utilities::replace_in_string(choices, "|", ", ") + "."));
     }
 
 
@@ -43,9 +44,9 @@ namespace Viscoplastic
                                              "bilateral");
       const ContactLaw &law = *given.contact_law;
       const auto refuse_if  = [&](const bool when, const std::string &reason) {
-        require(!when,
-                "'" + entry(id, "Contact law") + "' is " + law.name + ", but " +
-                  reason);
+        AssertThrow(!when,
+                    ExcMessage("'" + entry(id, "Contact law") + "' is " +
+                               law.name + ", but " + reason));
       };
       refuse_if(law.kind == Kind::bilateral && follows_pressure,
                 "'Friction law' = " + given.friction_law->name +
@@ -70,13 +71,15 @@ namespace Viscoplastic
       const std::vector<double> components =
         Utilities::string_to_double(Utilities::split_string_list(text, ','));
       Tensor<1, dim> result;
-      require(components.size() == dim,
-              "'" + entry + "' needs " + std::to_string(dim) +
-                " components separated by commas, but '" + excerpt(text) +
-                "' has " + std::to_string(components.size()) + ".");
+      AssertThrow(components.size() == dim,
+                  ExcMessage("'" + entry + "' needs " + std::to_string(dim) +
+                             " components separated by commas, but '" +
+                             excerpt(text) + "' has " +
+                             std::to_string(components.size()) + "."));
       for (unsigned int d = 0; d < dim; ++d)
         result[d] = components[d];
-      require(result.norm() > 0., "'" + entry + "' is zero; give a direction.");
+      AssertThrow(result.norm() > 0.,
+                  ExcMessage("'" + entry + "' is zero; give a direction."));
       return result / result.norm();
     }
 
@@ -87,10 +90,11 @@ namespace Viscoplastic
     given_components(const std::string &text, const std::string &entry)
     {
       const auto parts = Utilities::split_string_list(text, ';');
-      require(parts.size() == dim,
-              "'" + entry + "' needs " + std::to_string(dim) +
-                " components separated by semicolons, but '" + excerpt(text) +
-                "' has " + std::to_string(parts.size()) + ".");
+      AssertThrow(parts.size() == dim,
+                  ExcMessage("'" + entry + "' needs " + std::to_string(dim) +
+                             " components separated by semicolons, but '" +
+                             excerpt(text) + "' has " +
+                             std::to_string(parts.size()) + "."));
       std::array<std::optional<Expression<dim>>, dim> result;
       for (unsigned int d = 0; d < dim; ++d)
         if (parts[d] != "free")
@@ -111,16 +115,18 @@ namespace Viscoplastic
       std::vector<std::string> parts(dim, "exact");
       if (!Utilities::trim(text).empty())
         parts = Utilities::split_string_list(text, ';');
-      require(parts.size() == dim && std::all_of(parts.begin(),
-                                                 parts.end(),
-                                                 [](const std::string &part) {
-                                                   return part == "exact" ||
-                                                          part == "free";
-                                                 }),
-              "'" + entry + "' is '" + excerpt(text) +
-                "', but with 'Exact solution/Data' = solution it can only be "
-                "left out, or be a list of `exact' and `free' for the " +
-                std::to_string(dim) + " components.");
+      AssertThrow(
+        parts.size() == dim && std::all_of(parts.begin(),
+                                           parts.end(),
+                                           [](const std::string &part) {
+                                             return part == "exact" ||
+                                                    part == "free";
+                                           }),
+        ExcMessage(
+          "'" + entry + "' is '" + excerpt(text) +
+          "', but with 'Exact solution/Data' = solution it can only be "
+          "left out, or be a list of `exact' and `free' for the " +
+          std::to_string(dim) + " components."));
       std::array<std::optional<Expression<dim>>, dim> result;
       for (unsigned int d = 0; d < dim; ++d)
         if (parts[d] == "exact")
@@ -227,10 +233,11 @@ namespace Viscoplastic
                   const std::string                    &what,
                   const std::string                    &instead) const
       {
-        require(!datum || !datum->depends_on_time(),
-                "'" + entry(condition.id, name) + "' depends on time; " + what +
-                  " not become stiffer or softer, let the " + instead +
-                  " depend on time.");
+        AssertThrow(!datum || !datum->depends_on_time(),
+                    ExcMessage("'" + entry(condition.id, name) +
+                               "' depends on time; " + what +
+                               " not become stiffer or softer, let the " +
+                               instead + " depend on time."));
       }
 
       std::optional<VectorExpression<dim>>
@@ -256,13 +263,14 @@ namespace Viscoplastic
             given_components<dim>(text, name);
         if (!is_used)
           return {};
-        require(
+        AssertThrow(
           std::any_of(result.begin(),
                       result.end(),
                       [](const auto &one) { return one.has_value(); }),
-          "'" + name +
+          ExcMessage(
+            "'" + name +
             "' prescribes nothing; a boundary that is free in all directions "
-            "has the role free, or traction with a load or springs.");
+            "has the role free, or traction with a load or springs."));
         return result;
       }
     };
@@ -288,10 +296,12 @@ namespace Viscoplastic
                       friction_law != nullptr,
                       names_of(friction_laws()));
         contact_law = contact_law_of(id, parameters);
-        require(!(solution && is_unilateral()),
-                "'" + entry(id, "Contact law") + "' is " + contact_law->name +
-                  ", for which 'Exact solution/Data' = solution makes no data; "
-                  "use 'Data' = scene.");
+        AssertThrow(
+          !(solution && is_unilateral()),
+          ExcMessage(
+            "'" + entry(id, "Contact law") + "' is " + contact_law->name +
+            ", for which 'Exact solution/Data' = solution makes no data; "
+            "use 'Data' = scene."));
       }
 
     if (solution)
@@ -299,19 +309,23 @@ namespace Viscoplastic
            {std::make_pair("Traction", parameters.traction),
             std::make_pair("Pressure", parameters.pressure),
             std::make_pair("Normal stress", parameters.normal_stress)})
-        require(!is_given(text),
-                "'" + entry(id, name) +
-                  "' is given, but 'Exact solution/Data' = solution makes it; "
-                  "leave one of them out.");
+        AssertThrow(
+          !is_given(text),
+          ExcMessage(
+            "'" + entry(id, name) +
+            "' is given, but 'Exact solution/Data' = solution makes it; "
+            "leave one of them out."));
     const EntryReader<dim> read{*this};
     displacement = read.displacement(parameters.displacement);
-    require(role != BoundaryRole::traction || solution ||
-              is_given(parameters.traction) || is_given(parameters.pressure) ||
-              is_given(parameters.normal_stiffness) ||
-              is_given(parameters.tangential_stiffness),
-            "'" + entry(id, "Traction") +
-              "' is missing, and so are 'Pressure' and stiffnesses of springs; "
-              "a boundary without load has the role free.");
+    AssertThrow(
+      role != BoundaryRole::traction || solution ||
+        is_given(parameters.traction) || is_given(parameters.pressure) ||
+        is_given(parameters.normal_stiffness) ||
+        is_given(parameters.tangential_stiffness),
+      ExcMessage(
+        "'" + entry(id, "Traction") +
+        "' is missing, and so are 'Pressure' and stiffnesses of springs; "
+        "a boundary without load has the role free."));
     traction = read.vector("Traction", parameters.traction);
     pressure = read.nonzero_scalar("Pressure", parameters.pressure);
     normal_stiffness =
@@ -324,19 +338,22 @@ namespace Viscoplastic
     slip_rate_factor.emplace(parameters.slip_rate_factor,
                              entry(id, "Slip rate factor"),
                              "v");
-    require(
+    AssertThrow(
       !slip_rate_factor->depends_on_time(),
-      "'" + entry(id, "Slip rate factor") +
+      ExcMessage(
+        "'" + entry(id, "Slip rate factor") +
         "' depends on t, but only the slip rate v is known there; 'Friction "
-        "bound' and 'Friction coefficient' may depend on place and time.");
+        "bound' and 'Friction coefficient' may depend on place and time."));
     if (!uses(*this, "Slip rate factor") ||
         (!slip_rate_factor->depends_on_position() &&
          slip_rate_factor->value(Point<1>(), 0.) == 1.))
       slip_rate_factor.reset();
-    require(!(solution && slip_rate_factor),
-            "'" + entry(id, "Slip rate factor") +
-              "' is given, for which 'Exact solution/Data' = solution makes no "
-              "data; use 'Data' = scene.");
+    AssertThrow(
+      !(solution && slip_rate_factor),
+      ExcMessage(
+        "'" + entry(id, "Slip rate factor") +
+        "' is given, for which 'Exact solution/Data' = solution makes no "
+        "data; use 'Data' = scene."));
     normal_stress = read.scalar("Normal stress", parameters.normal_stress);
     given_gap     = read.nonzero_scalar("Gap", parameters.gap);
     std::vector<double> numbers;

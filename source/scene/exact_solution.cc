@@ -37,16 +37,18 @@ namespace Viscoplastic
     , space_step(relative_step)
     , time_step(relative_step * end_time)
   {
-    require(!Utilities::trim(parameters.displacement).empty(),
-            "'Exact solution/Displacement' is missing, but other entries of "
-            "that section are given.");
+    AssertThrow(
+      !Utilities::trim(parameters.displacement).empty(),
+      ExcMessage(
+        "'Exact solution/Displacement' is missing, but other entries of "
+        "that section are given."));
     given_displacement.emplace(parameters.displacement,
                                dim + (is_generalized() ? 1 : 0),
                                "Exact solution/Displacement");
-    require(!is_generalized() ||
-              !(*given_displacement)[dim].depends_on_position(),
-            "The last component of 'Exact solution/Displacement', eps_zz, "
-            "depends on the place, but it is one for the whole section.");
+    AssertThrow(
+      !is_generalized() || !(*given_displacement)[dim].depends_on_position(),
+      ExcMessage("The last component of 'Exact solution/Displacement', eps_zz, "
+                 "depends on the place, but it is one for the whole section."));
     if (!Utilities::trim(parameters.stress).empty())
       given_stress.emplace(parameters.stress,
                            stress_components<dim>().size(),
@@ -61,10 +63,11 @@ namespace Viscoplastic
   {
     space_step = relative_step * size;
     material   = has_own_stress() ? nullptr : elastic;
-    require(
+    AssertThrow(
       !makes_data || has_stress(),
-      "'Exact solution/Stress' is missing; only for a body of one elastic "
-      "material without thermal expansion it follows from the displacement.");
+      ExcMessage(
+        "'Exact solution/Stress' is missing; only for a body of one elastic "
+        "material without thermal expansion it follows from the displacement."));
   }
 
 
@@ -225,12 +228,13 @@ namespace Viscoplastic
       const double coarse = difference(16. * time_step),
                    fine   = difference(time_step);
       // By 2 for a square root; by 16^0.1 for t^0.9.
-      require(!(fine > 1.3 * coarse &&
-                difference(time_step / 16.) > 1.3 * fine),
-              "'Exact solution/" + name + "' has no time derivative at x = (" +
-                as_text(x) + "), t = " + as_text(t) +
-                ": its differences over shorter and shorter times grow "
-                "without bound.");
+      AssertThrow(
+        !(fine > 1.3 * coarse && difference(time_step / 16.) > 1.3 * fine),
+        ExcMessage("'Exact solution/" + name +
+                   "' has no time derivative at x = (" + as_text(x) +
+                   "), t = " + as_text(t) +
+                   ": its differences over shorter and shorter times grow "
+                   "without bound."));
     };
     refuse_growth("Displacement",
                   [&](const double s) { return displacement(x, s); });

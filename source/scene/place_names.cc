@@ -24,9 +24,9 @@ namespace Viscoplastic
     check_name(const std::string &name, const std::string &entry)
     {
       const auto require = [&](const bool condition, const std::string &why) {
-        Viscoplastic::require(condition,
-                              "'" + entry + "': the name '" + excerpt(name) +
-                                "' " + why);
+        AssertThrow(condition,
+                    ExcMessage("'" + entry + "': the name '" + excerpt(name) +
+                               "' " + why));
       };
       require(name.size() <= longest_name,
               "is too long; at most " + std::to_string(longest_name) +
@@ -69,9 +69,10 @@ namespace Viscoplastic
         return;
       check_name(name, entry);
       for (const auto &[other, taken] : names)
-        require(taken != name,
-                "'" + entry + "' is '" + excerpt(name) + "', which " +
-                  other.text() + " is called already; take another name.");
+        AssertThrow(taken != name,
+                    ExcMessage("'" + entry + "' is '" + excerpt(name) +
+                               "', which " + other.text() +
+                               " is called already; take another name."));
       names[place] = name;
     };
     for (const auto &[id, boundary] : parameters.boundaries)
@@ -110,10 +111,11 @@ namespace Viscoplastic
         if (names.count(place) == 1)
           continue;
         for (const auto &[other, taken] : given)
-          require(taken != name,
-                  "The scene calls " + other.text() + " '" + excerpt(name) +
-                    "', as '" + geometry.file + "' calls " + place.text() +
-                    "; take another name.");
+          AssertThrow(taken != name,
+                      ExcMessage("The scene calls " + other.text() + " '" +
+                                 excerpt(name) + "', as '" + geometry.file +
+                                 "' calls " + place.text() +
+                                 "; take another name."));
         if (!find(name))
           try
             {

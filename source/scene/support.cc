@@ -30,17 +30,19 @@ namespace Viscoplastic
           if (name.empty())
             continue;
           const std::size_t d = std::string("xyz").substr(0, dim).find(name);
-          require(name.size() == 1 && d != std::string::npos,
-                  "'" + entry + "': '" + excerpt(support) + "' holds '" +
-                    excerpt(name) + "', but components are " +
-                    (dim == 2 ? "x and y." : "x, y and z."));
+          AssertThrow(name.size() == 1 && d != std::string::npos,
+                      ExcMessage("'" + entry + "': '" + excerpt(support) +
+                                 "' holds '" + excerpt(name) +
+                                 "', but components are " +
+                                 (dim == 2 ? "x and y." : "x, y and z.")));
           is_held[d] = any = true;
         }
-      require(any,
-              "'" + entry + "': '" + excerpt(support) +
-                "' holds nothing; write `" +
-                (entry == "Supports/Points" ? "coordinates" : "boundary ids") +
-                ": components', such as x y.");
+      AssertThrow(any,
+                  ExcMessage("'" + entry + "': '" + excerpt(support) +
+                             "' holds nothing; write `" +
+                             (entry == "Supports/Points" ? "coordinates" :
+                                                           "boundary ids") +
+                             ": components', such as x y."));
       std::string result;
       for (unsigned int d = 0; d < dim; ++d)
         result += std::string(d == 0 ? "" : "; ") + (is_held[d] ? "0" : "free");
@@ -55,16 +57,18 @@ namespace Viscoplastic
       std::set<types::boundary_id> result;
       for (const std::string &id : Utilities::split_string_list(text, ','))
         {
-          require(!id.empty() && id.size() < 10 &&
-                    id.find_first_not_of("0123456789") == std::string::npos,
-                  "'Supports/Edges': '" + excerpt(id) + "' in '" +
-                    excerpt(support) + "' is no boundary id.");
+          AssertThrow(!id.empty() && id.size() < 10 &&
+                        id.find_first_not_of("0123456789") == std::string::npos,
+                      ExcMessage("'Supports/Edges': '" + excerpt(id) +
+                                 "' in '" + excerpt(support) +
+                                 "' is no boundary id."));
           result.insert(Utilities::string_to_int(id));
         }
-      require(result.size() > 1,
-              "'Supports/Edges': '" + excerpt(support) +
-                "' names one boundary; an edge is where at least two meet, "
-                "such as `1, 3: y'.");
+      AssertThrow(result.size() > 1,
+                  ExcMessage(
+                    "'Supports/Edges': '" + excerpt(support) +
+                    "' names one boundary; an edge is where at least two meet, "
+                    "such as `1, 3: y'."));
       return result;
     }
 
@@ -163,30 +167,34 @@ namespace Viscoplastic
                     here             = ids;
                   }
               }
-            require(nearest <= vertex_tolerance * size,
-                    "'Supports/Points': there is no vertex of the coarse mesh "
-                    "at (" +
-                      as_text(given) + "); the nearest one is at (" +
-                      as_text(*support.position) +
-                      "). More cells in the coarse mesh have more vertices.");
+            AssertThrow(
+              nearest <= vertex_tolerance * size,
+              ExcMessage(
+                "'Supports/Points': there is no vertex of the coarse mesh "
+                "at (" +
+                as_text(given) + "); the nearest one is at (" +
+                as_text(*support.position) +
+                "). More cells in the coarse mesh have more vertices."));
           }
         else
           {
             for (const types::boundary_id id : here)
-              require(boundary.count(id) == 1,
-                      "'Supports/Edges': there is no boundary " +
-                        std::to_string(id) + "; the mesh has the ids " +
-                        list(boundary_ids(triangulation)) + ".");
-            require(std::any_of(vertices.begin(),
-                                vertices.end(),
-                                [&here](const auto &vertex) {
-                                  return std::includes(vertex.second.begin(),
-                                                       vertex.second.end(),
-                                                       here.begin(),
-                                                       here.end());
-                                }),
-                    "'Supports/Edges': boundaries " + list(here) +
-                      " do not meet.");
+              AssertThrow(boundary.count(id) == 1,
+                          ExcMessage("'Supports/Edges': there is no boundary " +
+                                     std::to_string(id) +
+                                     "; the mesh has the ids " +
+                                     list(boundary_ids(triangulation)) + "."));
+            AssertThrow(
+              std::any_of(vertices.begin(),
+                          vertices.end(),
+                          [&here](const auto &vertex) {
+                            return std::includes(vertex.second.begin(),
+                                                 vertex.second.end(),
+                                                 here.begin(),
+                                                 here.end());
+                          }),
+              ExcMessage("'Supports/Edges': boundaries " + list(here) +
+                         " do not meet."));
           }
         for (const types::boundary_id id : here)
           if (const BoundaryCondition<dim> &other = boundary.at(id);

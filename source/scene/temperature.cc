@@ -11,8 +11,8 @@ namespace Viscoplastic
     if (Utilities::trim(text).empty())
       return {};
     const Expression<1> number(text, entry);
-    require(!number.depends_on_position() && !number.depends_on_time(),
-            "'" + entry + "' = " + text + " is not a number.");
+    AssertThrow(!number.depends_on_position() && !number.depends_on_time(),
+                ExcMessage("'" + entry + "' = " + text + " is not a number."));
     return number.value(Point<1>(), 0.);
   }
 
@@ -22,8 +22,8 @@ namespace Viscoplastic
   optional_positive_number(const std::string &text, const std::string &entry)
   {
     const auto result = optional_number(text, entry);
-    require(!result || *result > 0.,
-            "'" + entry + "' = " + text + " is not positive.");
+    AssertThrow(!result || *result > 0.,
+                ExcMessage("'" + entry + "' = " + text + " is not positive."));
     return result;
   }
 
@@ -60,9 +60,10 @@ namespace Viscoplastic
   {
     if (!Utilities::trim(parameters.value).empty())
       return std::make_unique<const Temperature<dim>>(parameters, units);
-    require(
+    AssertThrow(
       parameters.reference.empty() && parameters.gas_constant.empty(),
-      "'Temperature' has no `Value', so that its other entries mean nothing.");
+      ExcMessage(
+        "'Temperature' has no `Value', so that its other entries mean nothing."));
     return nullptr;
   }
 

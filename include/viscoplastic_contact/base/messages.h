@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
+#include <deal.II/base/exceptions.h>
+
 #include <mpi.h>
 
 #include <exception>
@@ -16,15 +18,6 @@ namespace Viscoplastic
   /// Throw ExcMessage with a sentence for the user.
   [[noreturn]] void
   refuse(const std::string &sentence);
-
-  /// The same unless a condition holds.
-  template <typename Condition>
-  void
-  require(const Condition &condition, const std::string &sentence)
-  {
-    if (!condition)
-      refuse(sentence);
-  }
 
   /// A number or a place as a stream writes it.
   template <typename T>

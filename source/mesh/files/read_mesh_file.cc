@@ -89,8 +89,9 @@ namespace Viscoplastic
       if (Utilities::MPI::this_mpi_process(communicator) == 0)
         result = run_script(name, plane_model);
       result = Utilities::MPI::broadcast(communicator, result, 0);
-      require(result.second.empty(),
-              "The mesh file '" + name + "' " + result.second + ".");
+      AssertThrow(result.second.empty(),
+                  ExcMessage("The mesh file '" + name + "' " + result.second +
+                             "."));
       return std::move(result.first);
     }
 
@@ -103,15 +104,17 @@ namespace Viscoplastic
       const std::string     it = "The mesh file '" + name + "' ";
       std::error_code       error;
       const fs::file_status status = fs::status(name, error);
-      require(fs::exists(status), it + "does not exist.");
-      require(!fs::is_directory(status), it + "is a directory.");
-      require(fs::is_regular_file(status), it + "is not a regular file.");
+      AssertThrow(fs::exists(status), ExcMessage(it + "does not exist."));
+      AssertThrow(!fs::is_directory(status),
+                  ExcMessage(it + "is a directory."));
+      AssertThrow(fs::is_regular_file(status),
+                  ExcMessage(it + "is not a regular file."));
       std::ifstream input(name, std::ios::binary);
-      require(input, it + "cannot be opened.");
+      AssertThrow(input, ExcMessage(it + "cannot be opened."));
       std::string text{std::istreambuf_iterator<char>(input),
                        std::istreambuf_iterator<char>()};
-      require(text.find_first_not_of(" \t\r\n") != std::string::npos,
-              it + "is empty.");
+      AssertThrow(text.find_first_not_of(" \t\r\n") != std::string::npos,
+                  ExcMessage(it + "is empty."));
       return text;
     }
 

@@ -132,12 +132,7 @@ namespace
     DistributedVector x = d.space.owned_vector(), y(x);
     for (std::size_t i = 0; i < d.space.excluded().size(); ++i)
       x.begin()[i] = d.space.excluded()[i] ? 0. : 1. + i % 7;
-    print("product",
-          median_seconds(9, [&] { d.matrix.vmult(y, x); }),
-          (matrix_bytes(dim) + 16.) * n);
-    if (multigrid->vmult_matrix(y, x))
-      print("shared",
-            median_seconds(9, [&] { multigrid->vmult_matrix(y, x); }));
+    print("product", median_seconds(9, [&] { d.matrix.vmult(y, x); }));
     print("cycle",
           median_seconds(9, [&] { multigrid->vmult_untruncated(y, x); }));
     print("dofs", n);

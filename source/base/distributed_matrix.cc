@@ -3,10 +3,13 @@
 #include <deal.II/lac/trilinos_vector.h>
 
 #include <viscoplastic_contact/base/distributed_matrix.h>
+#include <viscoplastic_contact/base/row_kernels.h>
 
 #include <boost/serialization/utility.hpp>
 
 #include <algorithm>
+#include <cstring>
+#include <unordered_map>
 
 namespace Viscoplastic
 {
@@ -75,38 +78,6 @@ namespace Viscoplastic
       for (unsigned int c = 0; c < dim; ++c)
         for (unsigned int d = 0; d < dim; ++d)
           y[d] += block[c * dim + d] * x[c];
-    }
-
-
-
-    template <int dim>
-    void
-    multiply(const std::size_t  *begin,
-             const unsigned int *columns,
-             const double       *block,
-             const unsigned int  n_rows,
-             const double       *x,
-             double *const __restrict y)
-    {
-      std::fill(y, y + n_rows * dim, 0.);
-      for (unsigned int i = 0; i < n_rows; ++i)
-        {
-          double        sum[dim] = {}, of_row[dim];
-          const double *x_row    = x + i * dim;
-          std::copy(x_row, x_row + dim, of_row);
-          add_product<dim>(block, of_row, sum);
-          for (std::size_t e = begin[i] + 1; e < begin[i + 1]; ++e)
-            {
-              const unsigned int j = columns[e];
-              block += dim * dim;
-              add_product<dim>(block, x + j * dim, sum);
-              if (j < n_rows)
-                add_transposed_product<dim>(block, of_row, y + j * dim);
-            }
-          block += dim * dim;
-          for (unsigned int c = 0; c < dim; ++c)
-            y[i * dim + c] += sum[c];
-        }
     }
   } // namespace
 
@@ -272,6 +243,7 @@ namespace Viscoplastic
     result->add_rows(lists, n_own_lists);
     result->make_exchange();
     values.assign(result->columns.size() * dim * dim, 0.);
+    shared_block.clear();
     pattern = result;
   }
 
@@ -294,9 +266,8 @@ namespace Viscoplastic
       is_stored ? p.find(row, column) : p.find(column, row);
     if (entry == no_entry)
       return 0.;
-    return values[entry * n_entries_of_block() + (is_stored ?
-                                                    (i % dim) * dim + j % dim :
-                                                    (j % dim) * dim + i % dim)];
+    return is_stored ? block(row, entry)[(i % dim) * dim + j % dim] :
+                       block(column, entry)[(j % dim) * dim + i % dim];
   }
 
 
@@ -362,12 +333,15 @@ namespace Viscoplastic
                            const DistributedVector &x) const
   {
     const auto multiply_by = [&](const double *at) {
-      (pattern->dim == 2 ? multiply<2> : multiply<3>)(pattern->begin.data(),
-                                                      pattern->columns.data(),
-                                                      values.data(),
-                                                      pattern->n_owned,
-                                                      at,
-                                                      y.begin());
+      static const auto in_2d = symmetric_product<2>(),
+                        in_3d = symmetric_product<3>();
+      (pattern->dim == 2 ? in_2d : in_3d)({pattern->n_owned,
+                                           pattern->begin.data(),
+                                           first_block().data(),
+                                           pattern->columns.data(),
+                                           values.data()},
+                                          y.begin(),
+                                          at);
     };
     if (pattern->partitioner->n_mpi_processes() == 1)
       multiply_by(x.begin());
@@ -400,13 +374,13 @@ namespace Viscoplastic
     y                             = 0.;
     for (const auto &[i, entry] : places)
       {
-        const unsigned int j     = pattern->columns[entry];
-        const double      *block = &values[entry * n_entries_of_block()];
-        double            *to    = y.begin() + i * dim;
-        (dim == 2 ? add_product<2> : add_product<3>)(block, &at[j * dim], to);
+        const unsigned int j      = pattern->columns[entry];
+        const double      *values = block(i, entry);
+        double            *to     = y.begin() + i * dim;
+        (dim == 2 ? add_product<2> : add_product<3>)(values, &at[j * dim], to);
         if (j != i && j < pattern->n_owned)
           (dim == 2 ? add_transposed_product<2> :
-                      add_transposed_product<3>)(block,
+                      add_transposed_product<3>)(values,
                                                  &at[i * dim],
                                                  y.begin() + j * dim);
       }
@@ -418,6 +392,7 @@ namespace Viscoplastic
   DistributedMatrix::add(const std::vector<types::global_dof_index> &dofs,
                          const FullMatrix<double>                   &matrix)
   {
+    take_apart();
     const unsigned int        dim = pattern->dim;
     std::vector<unsigned int> numbers;
     for (std::size_t a = 0; a < dofs.size(); a += dim)
@@ -443,10 +418,87 @@ namespace Viscoplastic
 
 
   void
+  DistributedMatrix::add_to_diagonal(const std::size_t i, const double value)
+  {
+    take_apart();
+    const unsigned int dim = pattern->dim;
+    values[pattern->begin[i / dim] * n_entries_of_block() +
+           (i % dim) * (dim + 1)] += value;
+  }
+
+
+
+  void
+  DistributedMatrix::share_rows()
+  {
+    take_apart();
+    const std::size_t        size = n_entries_of_block();
+    std::vector<std::size_t> first;
+    std::vector<double>      shared;
+    first.reserve(pattern->n_owned);
+    // Rows so far by a hash of their values.
+    std::unordered_multimap<std::uint64_t, unsigned int> known;
+    for (unsigned int i = 0; i < pattern->n_owned; ++i)
+      {
+        const double *row = &values[pattern->begin[i] * size];
+        const auto    n   = [&](const unsigned int of_row) {
+          return (pattern->begin[of_row + 1] - pattern->begin[of_row]) * size;
+        };
+        std::uint64_t key = n(i);
+        for (std::size_t e = 0; e < n(i); ++e)
+          {
+            std::uint64_t bits;
+            std::memcpy(&bits, row + e, sizeof(bits));
+            key = (key ^ bits) * 0x9E3779B97F4A7C15U + (key >> 29);
+          }
+        const auto [begin, end] = known.equal_range(key);
+        const auto same = std::find_if(begin, end, [&](const auto &other) {
+          return n(other.second) == n(i) &&
+                 std::memcmp(&shared[first[other.second] * size],
+                             row,
+                             n(i) * sizeof(double)) == 0;
+        });
+        if (same != end)
+          {
+            first.push_back(first[same->second]);
+            continue;
+          }
+        known.emplace(key, i);
+        first.push_back(shared.size() / size);
+        shared.insert(shared.end(), row, row + n(i));
+        if (shared.size() > values.size() / 2)
+          return;
+      }
+    shared.shrink_to_fit();
+    values.swap(shared);
+    shared_block.swap(first);
+  }
+
+
+
+  void
+  DistributedMatrix::take_apart()
+  {
+    if (shared_block.empty())
+      return;
+    const std::size_t   size = n_entries_of_block();
+    std::vector<double> all(pattern->columns.size() * size, 0.);
+    for (unsigned int i = 0; i < pattern->n_owned; ++i)
+      std::copy_n(block(i, pattern->begin[i]),
+                  (pattern->begin[i + 1] - pattern->begin[i]) * size,
+                  &all[pattern->begin[i] * size]);
+    values.swap(all);
+    shared_block.clear();
+  }
+
+
+
+  void
   DistributedMatrix::compress()
   {
     if (pattern->partitioner->n_mpi_processes() == 1)
       return;
+    take_apart();
     const std::size_t                           size = n_entries_of_block();
     std::map<unsigned int, std::vector<double>> messages;
     for (const auto &[rank, range] : pattern->to_send)

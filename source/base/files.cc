@@ -176,28 +176,55 @@ namespace Viscoplastic
 
 
 
+  namespace
+  {
+    /// Replace a file by what @p write leaves in the one given to it.
+    template <typename Function>
+    void
+    replace(const std::string &name, const Function &write)
+    {
+      require_writable_file(name);
+      const std::string part = name + ".part";
+      try
+        {
+          Descriptor file(name, part, for_writing);
+          write(file);
+          file.close();
+          check_written(std::rename(part.c_str(), name.c_str()) == 0, name);
+        }
+      catch (const std::exception &)
+        {
+          std::error_code none;
+          fs::remove(part, none); // make room
+          throw;
+        }
+    }
+  } // namespace
+
+
+
   void
   replace_file(const std::string &name,
                const std::string &bytes,
                const bool         to_disk)
   {
-    require_writable_file(name);
-    const std::string part = name + ".part";
-    try
-      {
-        Descriptor file(name, part, for_writing);
-        file.write_all(bytes);
-        if (to_disk)
-          file.synchronize();
-        file.close();
-        check_written(std::rename(part.c_str(), name.c_str()) == 0, name);
-      }
-    catch (const std::exception &)
-      {
-        std::error_code none;
-        fs::remove(part, none); // make room
-        throw;
-      }
+    replace(name, [&](Descriptor &file) {
+      file.write_all(bytes);
+      if (to_disk)
+        file.synchronize();
+    });
+  }
+
+
+
+  void
+  replace_file(const std::string                  &name,
+               const std::function<std::string()> &next)
+  {
+    replace(name, [&](Descriptor &file) {
+      for (std::string part = next(); !part.empty(); part = next())
+        file.write_all(part);
+    });
   }
 
 

@@ -5,6 +5,7 @@
 #include <viscoplastic_contact/discretization/admissible_space.h>
 #include <viscoplastic_contact/discretization/conditions_at_nodes.h>
 #include <viscoplastic_contact/mesh/cell_order.h>
+#include <viscoplastic_contact/mesh/cell_shapes.h>
 
 namespace Viscoplastic
 {
@@ -157,6 +158,22 @@ namespace Viscoplastic
       result.compress();
       return result;
     }
+
+
+
+    template <int dim>
+    std::vector<unsigned int>
+    shapes_of(
+      const std::vector<typename DoFHandler<dim>::active_cell_iterator> &cells,
+      const PlaneModel                                                   model)
+    {
+      CellShapes<dim>           number_of(model);
+      std::vector<unsigned int> result;
+      result.reserve(cells.size());
+      for (const auto &cell : cells)
+        result.push_back(number_of.add(cell).first);
+      return result;
+    }
   } // namespace
 
 
@@ -182,6 +199,7 @@ namespace Viscoplastic
                      size_of_coarse_mesh(dof_handler.get_triangulation()) :
                      1.)
     , cells(owned_cells(dof_handler))
+    , shapes(shapes_of<dim>(cells, scene.plane_model()))
     , first_owned(owned.n_elements() > 0 ?
                     relevant.index_within_set(owned.nth_index_in_set(0)) :
                     0)

@@ -265,6 +265,7 @@ namespace Viscoplastic
           }
         hierarchy.row_begin.push_back(hierarchy.parents.size());
       }
+    hierarchy.parents.shrink_to_fit();
     hierarchy.has_interfaces = !space.mortar_rows.empty();
     for (const auto &of_boundary : space.mortar_rows)
       for (const auto &[node, row] : of_boundary.second)

@@ -110,9 +110,7 @@ namespace Viscoplastic
   Discretization<dim>::assemble_matrix()
   {
     assemble_elastic_matrix(space, moduli, mean_dilatation, matrix);
-    if (!springs)
-      return;
-    if (space.is_held_by_springs())
+    if (springs && space.is_held_by_springs())
       {
         // What rounding of the matrix resists a rigid motion with.
         double sum = 0.;
@@ -126,7 +124,9 @@ namespace Viscoplastic
                                "lost in rounding. Let them be stiffer, or "
                                "prescribe displacements that hold the body."));
       }
-    springs->add_to(matrix);
+    if (springs)
+      springs->add_to(matrix);
+    matrix.share_rows();
   }
 
 

@@ -3,21 +3,34 @@
 
 #include <viscoplastic_contact/discretization/elasticity.h>
 
+#include <map>
+
 namespace Viscoplastic
 {
   template <int dim>
   ElasticModuli<dim>::ElasticModuli(const AdmissibleSpace<dim> &space)
-    : is_uniform(space.scene.materials.size() == 1 &&
-                 space.scene.materials[0]->is_uniform())
-    , max_nu(-1.)
+    : max_nu(-1.)
   {
     const Scene<dim> &scene = space.scene;
-    if (is_uniform)
+    if (scene.materials.size() == 1 && scene.materials[0]->is_uniform())
       moduli.push_back(scene.materials[0]->stiffness(Point<dim>()));
     else
-      for (const auto &cell : space.cells)
-        moduli.push_back(
-          scene.material(cell->material_id()).stiffness(cell->center()));
+      {
+        std::map<types::material_id, unsigned int> number_of;
+        for (const auto &cell : space.cells)
+          {
+            const auto  id       = cell->material_id();
+            const auto &material = scene.material(id);
+            const auto  known    = number_of.find(id);
+            number.push_back(known != number_of.end() ? known->second :
+                                                        moduli.size());
+            if (known != number_of.end())
+              continue;
+            if (material.is_uniform())
+              number_of[id] = moduli.size();
+            moduli.push_back(material.stiffness(cell->center()));
+          }
+      }
     for (const Stiffness &stiffness : moduli)
       max_nu = std::max(max_nu, stiffness.poissons_ratio());
     // The same in all stages: what follows from it must not change with them.
@@ -35,7 +48,6 @@ namespace Viscoplastic
   template <int dim>
   ElasticModuli<dim>::ElasticModuli(const Stiffness &stiffness)
     : moduli(1, stiffness)
-    , is_uniform(true)
     , max_nu(stiffness.poissons_ratio())
   {}
 
@@ -118,25 +130,31 @@ namespace Viscoplastic
                             update_values | update_gradients |
                               update_JxW_values | update_quadrature_points);
     const unsigned int n = fe.n_dofs_per_cell() + (space.axial ? dim : 0);
-    FullMatrix<double> cartesian(n, n), cell_matrix(n, n);
-    const Stiffness   *last = nullptr;
+    // Cells that differ by a translation have one matrix, to the last digit:
+    // rows of nodes between such cells are equal, too.
+    std::map<std::pair<unsigned int, const Stiffness *>, FullMatrix<double>>
+                                         known;
+    FullMatrix<double>                   cell_matrix;
     std::vector<types::global_dof_index> dofs;
     for (std::size_t c = 0; c < space.cells.size(); ++c)
       {
         const auto &cell = space.cells[c];
-        fe_values.reinit(cell);
-        // The matrix of the last cell is that of its translate, too.
-        const Stiffness &stiffness = moduli(c);
-        if (&stiffness != last ||
-            fe_values.get_cell_similarity() != CellSimilarity::translation)
-          elastic_cell_matrix(fe_values,
-                              stiffness,
-                              mean_dilatation,
-                              cartesian,
-                              space.scene.plane_model(),
-                              1. / space.axial_length);
-        last        = &stiffness;
-        cell_matrix = cartesian;
+        const auto  key  = std::make_pair(space.shapes[c], &moduli(c));
+        auto        same = known.find(key);
+        if (same == known.end())
+          {
+            if (known.size() >= 64) // where hardly any are equal
+              known.clear();
+            same = known.emplace(key, FullMatrix<double>(n, n)).first;
+            fe_values.reinit(cell);
+            elastic_cell_matrix(fe_values,
+                                moduli(c),
+                                mean_dilatation,
+                                same->second,
+                                space.scene.plane_model(),
+                                1. / space.axial_length);
+          }
+        cell_matrix = same->second;
         space.get_dofs(cell, dofs);
         space.add_cell_matrix(dofs, cell_matrix, matrix);
       }

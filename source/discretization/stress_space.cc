@@ -21,32 +21,6 @@ namespace Viscoplastic
 
 
   template <int dim>
-  std::pair<unsigned int, bool>
-  CellShapes<dim>::add(
-    const typename DoFHandler<dim>::active_cell_iterator &cell)
-  {
-    // Vertices from the first, relative to the diameter and rounded: equal for
-    // translated cells, whatever rounding did to their vertices.
-    constexpr double                   resolution = 1ll << 36;
-    std::array<std::int64_t, key_size> key{};
-    int                                exponent;
-    const double                       diameter = cell->diameter();
-    key[0]         = std::llround(std::frexp(diameter, &exponent) * resolution);
-    key[1]         = exponent;
-    unsigned int i = 2;
-    for (unsigned int v = 1; v < cell->n_vertices(); ++v)
-      for (unsigned int d = 0; d < dim; ++d)
-        key[i++] = std::llround((cell->vertex(v)[d] - cell->vertex(0)[d]) /
-                                diameter * resolution);
-    if (is_of_ring)
-      key.back() = std::llround(cell->vertex(0)[0] / diameter * resolution);
-    const auto [entry, is_new] = number_of.emplace(key, number_of.size());
-    return {entry->second, is_new};
-  }
-
-
-
-  template <int dim>
   StressSpace<dim>::StressSpace(const AdmissibleSpace<dim> &space,
                                 const ElasticModuli<dim>   &moduli,
                                 const bool at_quadrature_points,
@@ -64,17 +38,15 @@ namespace Viscoplastic
                             update_values | update_gradients |
                               update_JxW_values | update_quadrature_points);
     const bool        has_hoops = space.scene.is_axisymmetric();
-    CellShapes<dim>   number_of(space.scene.plane_model());
     nodes.reserve(space.cells.size() * n_vertices);
-    shapes.reserve(space.cells.size());
-    for (const auto &cell : space.cells)
+    for (std::size_t c = 0; c < space.cells.size(); ++c)
       {
+        const auto &cell = space.cells[c];
         for (const unsigned int v : cell->vertex_indices())
           nodes.push_back(
             space.relevant.index_within_set(cell->vertex_dof_index(v, 0)));
-        const auto [shape, is_new] = number_of.add(cell);
-        shapes.push_back(shape);
-        if (!is_new)
+        const unsigned int shape = space.shapes[c];
+        if (shape < volumes.size())
           continue;
         fe_values.reinit(cell);
         double volume = 0.;
@@ -141,7 +113,7 @@ namespace Viscoplastic
   StressSpace<dim>::mean_strain(const std::size_t cell, const double *u) const
   {
     // Mean dilatation does not change it.
-    const std::size_t first = shapes[cell] * n_vertices;
+    const std::size_t first = space.shapes[cell] * n_vertices;
     return strain_at(displacements(cell, u),
                      &mean_gradients[first],
                      hoops.empty() ? nullptr : &mean_hoops[first],
@@ -161,8 +133,9 @@ namespace Viscoplastic
     double            mean   = 0.;
     for (unsigned int s = 0; s < n_samples; ++s)
       {
-        const std::size_t first = (shapes[cell] * n_samples + s) * n_vertices;
-        strain[s]               = strain_at(values,
+        const std::size_t first =
+          (space.shapes[cell] * n_samples + s) * n_vertices;
+        strain[s] = strain_at(values,
                               &gradients[first],
                               hoops.empty() ? nullptr : &hoops[first],
                               zz);
@@ -198,7 +171,7 @@ namespace Viscoplastic
     for (unsigned int s = 0; s < n_samples; ++s)
       {
         const Tensor<1, dim> *g =
-          &gradients[(shapes[cell] * n_samples + s) * n_vertices];
+          &gradients[(space.shapes[cell] * n_samples + s) * n_vertices];
         const double weighted = factor * weight(cell, s);
         // What acts in the plane, in 2D, and around an axis.
         double acting[dim][dim], around = 0.;
@@ -224,7 +197,8 @@ namespace Viscoplastic
         if (!hoops.empty())
           for (unsigned int v = 0; v < n_vertices; ++v)
             forces[v][0] +=
-              around * hoops[(shapes[cell] * n_samples + s) * n_vertices + v];
+              around *
+              hoops[(space.shapes[cell] * n_samples + s) * n_vertices + v];
       }
     for (unsigned int v = 0; v < n_vertices; ++v)
       for (unsigned int i = 0; i < dim; ++i)
@@ -250,7 +224,8 @@ namespace Viscoplastic
     std::array<std::array<double, n + 1>, n + 1> sums{};
     for (unsigned int s = 0; s < n_samples; ++s)
       {
-        const std::size_t first = (shapes[cell] * n_samples + s) * n_vertices;
+        const std::size_t first =
+          (space.shapes[cell] * n_samples + s) * n_vertices;
         const Tensor<1, dim> *g = &gradients[first];
         const double         *h = hoops.empty() ? nullptr : &hoops[first];
         const double         *C = tangent[s].begin_raw(), w = weight(cell, s);
@@ -263,7 +238,7 @@ namespace Viscoplastic
         if (mean_pressure)
           for (unsigned int i = 0; i < n; ++i)
             {
-              const std::size_t v = shapes[cell] * n_vertices + i / dim;
+              const std::size_t v = space.shapes[cell] * n_vertices + i / dim;
               excess[i] =
                 (mean_gradients[v][i % dim] - g[i / dim][i % dim] - hoop(i)) /
                 3.;
@@ -381,7 +356,6 @@ namespace Viscoplastic
 
 
 
-  VISCOPLASTIC_INSTANTIATE_CLASS(CellShapes);
   VISCOPLASTIC_INSTANTIATE_CLASS(StressSpace);
   VISCOPLASTIC_INSTANTIATE(irreversible_forces);
   VISCOPLASTIC_INSTANTIATE(add_irreversible_load);

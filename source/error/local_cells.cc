@@ -4,6 +4,7 @@
 
 #include <viscoplastic_contact/error/local_cells.h>
 #include <viscoplastic_contact/mesh/cell_order.h>
+#include <viscoplastic_contact/mesh/cell_shapes.h>
 
 namespace Viscoplastic
 {
@@ -91,9 +92,10 @@ namespace Viscoplastic
                                 update_quadrature_points | update_JxW_values);
     CellShapes<dim>             number_of(space.scene.plane_model());
     cells.reserve(space.cells.size());
-    const auto add = [&](const CellIterator &cell, const Stiffness &E) {
-      const auto [shape, is_new] = number_of.add(cell);
-      if (is_new)
+    const auto add = [&](const CellIterator &cell,
+                         const unsigned int  shape,
+                         const Stiffness    &E) {
+      if (shape == shapes.size())
         add_shape(cell, values, on_face);
       LocalCell here{shape,
                      cell->active_cell_index(),
@@ -108,10 +110,15 @@ namespace Viscoplastic
           space.relevant.index_within_set(cell->vertex_dof_index(v, 0));
       cells.push_back(std::move(here));
     };
-    for (const auto &cell : space.cells)
-      add(cell, stress_space.moduli(cells.size()));
+    for (std::size_t c = 0; c < space.cells.size(); ++c)
+      {
+        if (space.shapes[c] == shapes.size())
+          number_of.add(space.cells[c]);
+        add(space.cells[c], space.shapes[c], stress_space.moduli(c));
+      }
     for (const auto &cell : ghost_cells(space.dof_handler))
       add(cell,
+          number_of.add(cell).first,
           space.scene.material(cell->material_id()).stiffness(cell->center()));
   }
 

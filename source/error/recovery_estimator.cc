@@ -14,25 +14,24 @@ namespace Viscoplastic
                  cells.has_hoops || cells.stress_space.space.axial ?
                             std::vector<unsigned int>{0, 1, 2, 3} :
                             std::vector<unsigned int>{0, 1, 3})
-    , fe(FE_Q<dim>(1), components.size())
-    , dof_handler(cells.stress_space.space.dof_handler.get_triangulation())
   {
-    const AdmissibleSpace<dim> &space = cells.stress_space.space;
-    // In an order that does not depend on how the mesh came about: hanging
-    // nodes sum their parents in it.
-    distribute_nodes(fe, dof_handler);
-    IndexSet relevant;
-    DoFTools::extract_locally_relevant_dofs(dof_handler, relevant);
-    AffineConstraints<double> constraints(relevant);
-    DoFTools::make_hanging_node_constraints(dof_handler, constraints);
-    constraints.close();
-    values.reinit(dof_handler.locally_owned_dofs(),
-                  relevant,
+    const AdmissibleSpace<dim>      &space   = cells.stress_space.space;
+    const AffineConstraints<double> &hangs   = space.cartesian_hanging_nodes();
+    const unsigned int               n       = components.size();
+    const auto                       dofs_of = [&](const IndexSet &of_nodes) {
+      IndexSet result(of_nodes.size() / dim * n);
+      for (auto range = of_nodes.begin_intervals();
+           range != of_nodes.end_intervals();
+           ++range)
+        result.add_range(*range->begin() / dim * n,
+                         (range->last() + 1) / dim * n);
+      return result;
+    };
+    values.reinit(dofs_of(space.owned),
+                  dofs_of(space.relevant),
                   space.communicator);
-    sums.reinit(values);
-    maxima.reinit(values);
     const auto place = [&](const types::global_dof_index dof) {
-      return values.get_partitioner()->global_to_local(dof);
+      return values.get_partitioner()->global_to_local(dof / dim * n);
     };
 
     // Those of all ranks, which exchange sums at nodes together.
@@ -54,11 +53,15 @@ namespace Viscoplastic
           for (unsigned int d = 0; d < dim; ++d)
             normal[d] = condition.normal[d];
           for (const auto dof : DoFTools::extract_boundary_dofs(
-                 dof_handler,
-                 fe.component_mask(FEValuesExtractors::Scalar(0)),
+                 space.dof_handler,
+                 space.dof_handler.get_fe().component_mask(
+                   FEValuesExtractors::Scalar(0)),
                  {id}))
             mirrored.emplace_back(place(dof), normal);
         }
+    const auto       &partitioner = *values.get_partitioner();
+    const std::size_t n_nodes =
+      (partitioner.locally_owned_size() + partitioner.n_ghost_indices()) / n;
     parts.resize(part_of.size());
     for (const auto &[id, p] : part_of)
       {
@@ -66,11 +69,16 @@ namespace Viscoplastic
         // Strains grow at most like r^(-n/(n+1)) with the exponent n of a power
         // law (Hutchinson, Rice and Rosengren, 1968), with 9 for all that are
         // not linear.
-        const auto  &law   = space.scene.material(id).law;
-        const double n     = law && !law->has_constant_tangents() ? 9. : 1.;
-        part.largest_share = std::exp2(-2. / (n + 1.));
-        part.inverse_weight.reinit(values);
-        part.inverse_inner_weight.reinit(values);
+        const auto  &law      = space.scene.material(id).law;
+        const double exponent = law && !law->has_constant_tangents() ? 9. : 1.;
+        part.largest_share    = std::exp2(-2. / (exponent + 1.));
+        part.inverse_weight.resize(n_nodes);
+        part.inverse_inner_weight.resize(n_nodes);
+        if (part.largest_share > 0.5 && sums.size() == 0)
+          {
+            sums.reinit(values);
+            maxima.reinit(values);
+          }
       }
 
     // Of the section: rings of cells of one size differ in volume.
@@ -89,11 +97,7 @@ namespace Viscoplastic
       parts.size());
     for (unsigned int c = 0; c < cells.stress_space.n_cells(); ++c)
       {
-        const typename DoFHandler<dim>::active_cell_iterator cell(
-          &space.dof_handler.get_triangulation(),
-          space.cells[c]->level(),
-          space.cells[c]->index(),
-          &dof_handler);
+        const auto &cell = space.cells[c];
         nodes.emplace_back();
         ends.emplace_back();
         for (unsigned int v = 0; v < n_vertices; ++v)
@@ -113,41 +117,43 @@ namespace Viscoplastic
           if (is_at_end[v] && !is_at_end[opposite(v)])
             {
               ends[c].push_back(v);
-              for (unsigned int i = 0; i < components.size(); ++i)
-                parts[p].inverse_inner_weight.local_element(nodes[c][v] + i) +=
-                  1. / widths[c];
+              parts[p].inverse_inner_weight[nodes[c][v] / n] += 1. / widths[c];
             }
         parts[p].cells.push_back(c);
         for (unsigned int v = 0; v < n_vertices; ++v)
           {
             const types::global_dof_index dof = cell->vertex_dof_index(v, 0);
-            for (unsigned int i = 0; i < components.size(); ++i)
-              parts[p].inverse_weight.local_element(nodes[c][v] + i) +=
-                1. / widths[c];
-            if (constraints.is_constrained(dof))
+            parts[p].inverse_weight[nodes[c][v] / n] += 1. / widths[c];
+            if (hangs.is_constrained(dof))
               hanging[p].emplace(dof, nodes[c][v]);
           }
       }
     for (unsigned int p = 0; p < parts.size(); ++p)
       {
-        NodalVector &weight = parts[p].inverse_weight;
-        for (NodalVector *inverse : {&weight, &parts[p].inverse_inner_weight})
+        for (auto *weights :
+             {&parts[p].inverse_weight, &parts[p].inverse_inner_weight})
           {
-            inverse->compress(VectorOperation::add);
-            for (double &value : *inverse)
-              value = value > 0. ? 1. / value : 0.;
+            // The sums of all ranks.
+            values = 0.;
+            for (std::size_t i = 0; i < n_nodes; ++i)
+              values.local_element(i * n) = (*weights)[i];
+            values.compress(VectorOperation::add);
+            values.update_ghost_values();
+            for (std::size_t i = 0; i < n_nodes; ++i)
+              if (const double weight = values.local_element(i * n);
+                  weight > 0.)
+                (*weights)[i] = 1. / weight;
           }
-        weight.update_ghost_values();
         for (const auto &[dof, node] : hanging[p])
           {
             HangingNode result{node, {}};
             bool        has_parents = true;
             for (const auto &[parent, factor] :
-                 *constraints.get_constraint_entries(dof))
+                 *hangs.get_constraint_entries(dof))
               {
                 result.parents.emplace_back(place(parent), factor);
                 has_parents &=
-                  weight.local_element(result.parents.back().first) > 0.;
+                  parts[p].inverse_weight[result.parents.back().first / n] > 0.;
               }
             if (has_parents)
               parts[p].hanging_nodes.push_back(std::move(result));
@@ -169,10 +175,18 @@ namespace Viscoplastic
   RecoveryEstimator<dim>::find_across()
   {
     // All cells around a vertex of an owned cell are here.
-    std::map<unsigned int, std::vector<unsigned int>> around;
+    const std::size_t n_nodes =
+      local.stress_space.space.relevant.n_elements() / dim;
+    std::vector<unsigned int> begin(n_nodes + 2, 0),
+      around(local.cells.size() * n_vertices);
+    for (const Cell &cell : local.cells)
+      for (const unsigned int node : cell.nodes)
+        ++begin[node / dim + 2];
+    for (std::size_t n = 2; n < begin.size(); ++n)
+      begin[n] += begin[n - 1];
     for (unsigned int c = 0; c < local.cells.size(); ++c)
       for (const unsigned int node : local.cells[c].nodes)
-        around[node].push_back(c);
+        around[begin[node / dim + 1]++] = c;
     const double largest_ratio = std::pow(1.5, 1. / dim); // of widths
     for (unsigned int c = 0; c < nodes.size(); ++c)
       {
@@ -181,8 +195,11 @@ namespace Viscoplastic
         const auto &mine = local.cells[c].nodes;
         for (unsigned int v = 0; v < n_vertices; ++v)
           {
-            const auto &cells      = around.at(mine[v]);
-            bool        is_regular = cells.size() == n_vertices;
+            const unsigned int                  node = mine[v] / dim;
+            const ArrayView<const unsigned int> cells(&around[begin[node]],
+                                                      begin[node + 1] -
+                                                        begin[node]);
+            bool is_regular = cells.size() == n_vertices;
             for (const unsigned int other : cells)
               is_regular &=
                 local.cells[other].is_present &&
@@ -195,8 +212,8 @@ namespace Viscoplastic
               {
                 const auto  &its      = local.cells[other].nodes;
                 unsigned int n_common = 0;
-                for (const unsigned int node : its)
-                  n_common += std::count(mine.begin(), mine.end(), node);
+                for (unsigned int w = 0; w < n_vertices && n_common < 2; ++w)
+                  n_common += std::count(mine.begin(), mine.end(), its[w]);
                 if (n_common == 1)
                   across.back()[v] = other;
               }
@@ -220,7 +237,7 @@ namespace Viscoplastic
             nodal[node + i] += integral.access_raw_entry(components[i]);
       }
     values.compress(VectorOperation::add);
-    values.scale(part.inverse_weight);
+    scale(values, part.inverse_weight);
     values.update_ghost_values();
     interpolate_hanging_nodes(part);
   }
@@ -255,6 +272,19 @@ namespace Viscoplastic
         for (unsigned int i = 0; i < components.size(); ++i)
           nodal[node + i] = strain.access_raw_entry(components[i]);
       }
+  }
+
+
+
+  template <int dim>
+  void
+  RecoveryEstimator<dim>::scale(NodalVector               &strains,
+                                const std::vector<double> &factors) const
+  {
+    const unsigned int n     = components.size();
+    double            *entry = strains.begin();
+    for (std::size_t i = 0; i < strains.locally_owned_size(); ++i)
+      entry[i] *= factors[i / n];
   }
 
 
@@ -306,7 +336,7 @@ namespace Viscoplastic
           }
       }
     change.compress(VectorOperation::add);
-    change.scale(part.inverse_inner_weight);
+    scale(change, part.inverse_inner_weight);
     values.zero_out_ghost_values();
     values += change;
     values.update_ghost_values();

@@ -29,6 +29,8 @@ namespace Viscoplastic
     , cells(local_cells.cells)
   {
     make_faces();
+    interior_faces.shrink_to_fit();
+    boundary_faces.shrink_to_fit();
     make_face_values();
     make_initial_stress();
     make_thermal_points();

@@ -14,19 +14,16 @@ namespace Viscoplastic
     std::unique_ptr<Preconditioner>
     make_geometric(const BulkSystem &system, const SolverDemand &demand)
     {
-      typename GeometricMultigrid<dim>::Options options;
-      // Sharing rows pays after about four solves.
-      if (demand.n_solves < 4)
-        options.largest_shared_part = 0.;
       std::vector<DistributedVector> rigid_body_modes;
       if (!has_small_first_mesh(demand))
         rigid_body_modes = system.rigid_body_modes();
-      return std::make_unique<GeometricMultigrid<dim>>(system.matrix,
-                                                       system.excluded,
-                                                       system.hierarchy(),
-                                                       rigid_body_modes,
-                                                       system.face,
-                                                       options);
+      return std::make_unique<GeometricMultigrid<dim>>(
+        system.matrix,
+        system.excluded,
+        system.hierarchy(),
+        rigid_body_modes,
+        system.face,
+        typename GeometricMultigrid<dim>::Options());
     }
   } // namespace
 

@@ -27,19 +27,6 @@ namespace Viscoplastic
 
 
 
-  /// The matrix on the last mesh in double precision and Cartesian components.
-  template <int dim>
-  struct GeometricMultigrid<dim>::Operator
-  {
-    SharedRows<dim, double>                    rows;
-    LinearAlgebra::distributed::Vector<double> x, y;
-    /// The column of an unknown beyond the mesh, which the last rank owns; its
-    /// row by symmetry.
-    std::vector<double> beyond_mesh;
-  };
-
-
-
   template <int dim>
   GeometricMultigrid<dim>::GeometricMultigrid(
     const DistributedMatrix              &matrix,
@@ -56,7 +43,6 @@ namespace Viscoplastic
     , begins(1, 0)
     , masks(excluded, hierarchy, restriction)
     , has_direct_coarse_solver(rigid_body_modes.empty())
-    , largest_shared_part(options.largest_shared_part)
   {
     for (const Node n_owned :
          Utilities::MPI::all_gather(communicator,
@@ -114,8 +100,6 @@ namespace Viscoplastic
   bool
   GeometricMultigrid<dim>::renew()
   {
-    // Values that change are not worth it.
-    shared_matrix.reset();
     fill();
     return true;
   }
@@ -148,8 +132,6 @@ namespace Viscoplastic
         else
           level.space = std::make_unique<MultigridLevel<dim>>(
             rows, level.nodes, others, begins, communicator);
-        if (is_new && l + 1 == levels.size())
-          share_matrix(rows);
         if (l == 0)
           break;
         std::set<Node> ghosts;
@@ -194,37 +176,6 @@ namespace Viscoplastic
                                                             communicator);
     built_for.reset();
     set_masks(LevelMasks<dim>::untruncated, nullptr, true);
-  }
-
-
-
-  template <int dim>
-  void
-  GeometricMultigrid<dim>::share_matrix(const BlockRows<dim> &matrix_rows)
-  {
-    const MultigridLevel<dim> &level     = *levels.back()->space;
-    const auto                 is_shared = [this](const auto &rows) {
-      const std::vector<std::uint64_t> on_rank{rows.n_blocks(),
-                                               rows.n_stored_blocks()};
-      std::vector<std::uint64_t>       n_blocks(2);
-      Utilities::MPI::sum(on_rank, communicator, n_blocks);
-      return n_blocks[1] <= largest_shared_part * n_blocks[0];
-    };
-    // What differs in single precision does so in double precision, too.
-    if (!has_four_doubles() || !is_shared(level.matrix_rows()))
-      return;
-    auto result = std::make_unique<Operator>();
-    result->rows.set_values(matrix_rows,
-                            level.local_numbers(matrix_rows.columns));
-    if (!is_shared(result->rows))
-      return;
-    result->x.reinit(level.x.get_partitioner());
-    result->y.reinit(level.x.get_partitioner());
-    if (hierarchy.end_of_mesh * dim < matrix.m())
-      for (const auto row : matrix.locally_owned_range_indices())
-        result->beyond_mesh.push_back(
-          matrix.el(row, hierarchy.end_of_mesh * dim));
-    shared_matrix = std::move(result);
   }
 
 
@@ -345,57 +296,6 @@ namespace Viscoplastic
          i < excluded.size();
          ++i)
       y.begin()[i] = x.begin()[i] / matrix.diagonal(i);
-  }
-
-
-
-  template <int dim>
-  bool
-  GeometricMultigrid<dim>::vmult_matrix(DistributedVector       &y,
-                                        const DistributedVector &x) const
-  {
-    if (shared_matrix == nullptr)
-      return false;
-    y                 = 0.;
-    auto       &u     = shared_matrix->x;
-    auto       &v     = shared_matrix->y;
-    const auto &nodes = levels.back()->nodes;
-    for (unsigned int i = 0; i < nodes.size(); ++i)
-      {
-        const double *const from =
-          x.begin() + (nodes[i] - hierarchy.begin) * dim;
-        for (unsigned int d = 0; d < dim; ++d)
-          u.begin()[i * dim + d] = unit * from[d];
-      }
-    for (const auto &[i, directions] : rotated_nodes)
-      multiply(directions, u.begin() + i * dim);
-    u.update_ghost_values();
-    shared_matrix->rows.vmult(v.begin(), u.begin());
-    u.zero_out_ghost_values();
-    for (const auto &[i, directions] : rotated_nodes)
-      multiply(transpose(directions), v.begin() + i * dim);
-    for (unsigned int i = 0; i < nodes.size(); ++i)
-      {
-        double *const to = y.begin() + (nodes[i] - hierarchy.begin) * dim;
-        for (unsigned int d = 0; d < dim; ++d)
-          to[d] = v.begin()[i * dim + d];
-      }
-    if (hierarchy.end_of_mesh * dim < matrix.m())
-      {
-        const auto       &column = shared_matrix->beyond_mesh;
-        const std::size_t n      = hierarchy.first_level.size() * dim;
-        const bool        is_own = n < excluded.size();
-        // The unknown, and its row.
-        std::vector<double> sums{is_own ? x.begin()[n] : 0., 0.};
-        for (std::size_t i = 0; i < n; ++i)
-          sums[1] += column[i] * x.begin()[i];
-        Utilities::MPI::sum(sums, communicator, sums);
-        for (std::size_t i = 0; i < n; ++i)
-          y.begin()[i] += column[i] * sums[0];
-        if (is_own)
-          y.begin()[n] = column[n] * sums[0] + sums[1];
-      }
-    return true;
   }
 
 

@@ -73,8 +73,6 @@ namespace Viscoplastic
     double
     dual_norm(const Vector<double> &force) override
     {
-      if (is_approximate)
-        compute_residual();
       // Not filtered by the truncation: the residual on sticking components, if
       // any, is an error, too.
       product = residual;
@@ -130,11 +128,7 @@ namespace Viscoplastic
     search_terms(const Vector<double> &face_part) override
     {
       solver.restriction.set(face_part, w);
-      // Ten digits do on the way: dual_norm() looks at the matrix itself.
-      if (solver.preconditioner->vmult_matrix(product, w))
-        is_approximate = true;
-      else
-        solver.matrix.vmult(product, w);
+      solver.matrix.vmult(product, w);
       return {residual * w, product * w, solver.restriction.gather(product)};
     }
 
@@ -172,7 +166,6 @@ namespace Viscoplastic
       squared_norm = u * residual;
       residual.sadd(-1., 1., load);
       restrict_to_unknowns(residual);
-      is_approximate = false;
       first_is_truncated.reset();
     }
 
@@ -200,11 +193,9 @@ namespace Viscoplastic
     DistributedVector       &u;
     DistributedVector        residual, w, product;
     /// What the preconditioner, with truncation or without, has made of
-    /// product, with which conjugate gradients begin; and whether products of
-    /// shared rows are in the residual.
+    /// product, with which conjugate gradients begin.
     DistributedVector   first;
     std::optional<bool> first_is_truncated;
-    bool                is_approximate = false;
     FaceTruncation      truncation;
     bool                has_springs  = false;
     double              squared_norm = 0.;
@@ -227,10 +218,10 @@ namespace Viscoplastic
         {
           DistributedVector motion(x);
           solve.solver.restriction.tilt_motions(solve.truncation, motion);
-          multiply(y, motion);
+          solve.solver.matrix.vmult(y, motion);
         }
       else
-        multiply(y, x);
+        solve.solver.matrix.vmult(y, x);
       if (is_truncated)
         solve.solver.restriction.tilt_equations(solve.truncation, y);
       if (is_truncated && solve.has_springs)
@@ -238,15 +229,6 @@ namespace Viscoplastic
       solve.restrict_to_unknowns(y);
       if (is_truncated)
         solve.solver.restriction.project(solve.truncation, y);
-    }
-
-  private:
-    void
-    multiply(DistributedVector &y, const DistributedVector &x) const
-    {
-      // The residuals that decide are those of the matrix itself.
-      if (!solve.solver.preconditioner->vmult_matrix(y, x))
-        solve.solver.matrix.vmult(y, x);
     }
   };
 

@@ -38,6 +38,7 @@ namespace Viscoplastic
     if (begins.size() > 2)
       for (const auto &parents : ask_owners(ghosts, begins, communicator, row))
         add(parents);
+    result.parents.shrink_to_fit();
     return result;
   }
 

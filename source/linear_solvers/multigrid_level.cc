@@ -144,7 +144,9 @@ namespace Viscoplastic
     parent_begin.assign(interpolation.begin.begin(),
                         interpolation.begin.begin() + n_owned + 1);
     weights.clear();
+    weights.reserve(parent_begin.back());
     std::vector<Node> nodes_of_parents;
+    nodes_of_parents.reserve(parent_begin.back());
     for (std::size_t e = 0; e < parent_begin.back(); ++e)
       {
         nodes_of_parents.push_back(interpolation.parents[e].node);

@@ -8,7 +8,6 @@
 #include <cstdint>
 #include <cstring>
 #include <tuple>
-#include <type_traits>
 
 namespace Viscoplastic
 {
@@ -18,17 +17,16 @@ namespace Viscoplastic
 
     /// Binary digits by which blocks are told apart: of their largest entry,
     /// and of that of the row, below which there is only rounding.
-    template <typename Number>
-    constexpr int digits_of_block = std::is_same_v<Number, float> ? 22 : 36;
+    constexpr int digits_of_block = 22;
     constexpr int digits_of_row   = 46;
 
 
 
-    template <int dim, typename Number>
-    PackedBlock<dim, Number>
+    template <int dim>
+    PackedBlock<dim>
     packed(const NodeBlock<dim> &block)
     {
-      PackedBlock<dim, Number> result = {};
+      PackedBlock<dim> result = {};
       for (unsigned int i = 0; i < dim; ++i)
         for (unsigned int j = 0; j < dim; ++j)
           if (dim == 2)
@@ -40,9 +38,9 @@ namespace Viscoplastic
 
 
 
-    template <int dim, typename Number>
+    template <int dim>
     NodeBlock<dim>
-    unpacked(const PackedBlock<dim, Number> &block)
+    unpacked(const PackedBlock<dim> &block)
     {
       NodeBlock<dim> result;
       for (unsigned int i = 0; i < dim; ++i)
@@ -54,10 +52,9 @@ namespace Viscoplastic
 
 
 
-    template <int dim, typename Number>
+    template <int dim>
     bool
-    are_equal(const PackedBlock<dim, Number> &a,
-              const PackedBlock<dim, Number> &b)
+    are_equal(const PackedBlock<dim> &a, const PackedBlock<dim> &b)
     {
       return std::memcmp(a.parts, b.parts, sizeof(a.parts)) == 0;
     }
@@ -65,9 +62,9 @@ namespace Viscoplastic
 
 
     /// A hash, the same for equal blocks.
-    template <int dim, typename Number>
+    template <int dim>
     std::size_t
-    key(const PackedBlock<dim, Number> &block)
+    key(const PackedBlock<dim> &block)
     {
       std::uint32_t bits[sizeof(block.parts) / 4];
       std::memcpy(bits, block.parts, sizeof(block.parts));
@@ -110,11 +107,10 @@ namespace Viscoplastic
 
 
 
-  template <int dim, typename Number>
+  template <int dim>
   void
-  SharedRows<dim, Number>::set_values(
-    const BlockRows<dim>            &matrix,
-    const std::vector<unsigned int> &local_columns)
+  SharedRows<dim>::set_values(const BlockRows<dim>            &matrix,
+                              const std::vector<unsigned int> &local_columns)
   {
     AssertDimension(local_columns.size(), matrix.columns.size());
     rows.clear();
@@ -159,12 +155,12 @@ namespace Viscoplastic
             if (column == i)
               continue;
             const double size = sizes[e - begin];
-            blocks.push_back(packed<dim, Number>(
-              size > 0. ? rounded<dim>(matrix.values[e],
-                                       std::max(std::ilogb(size) -
-                                                  digits_of_block<Number>,
-                                                least_exponent)) :
-                          NodeBlock<dim>()));
+            blocks.push_back(packed<dim>(
+              size > 0. ?
+                rounded<dim>(matrix.values[e],
+                             std::max(std::ilogb(size) - digits_of_block,
+                                      least_exponent)) :
+                NodeBlock<dim>()));
             neighbors.push_back({column > i,
                                  key(blocks.back()),
                                  column,
@@ -206,35 +202,35 @@ namespace Viscoplastic
               values.push_back(blocks[neighbor.block]);
           }
         rows.push_back(row);
-        row_sums.push_back(packed<dim, Number>(sum));
+        row_sums.push_back(packed<dim>(sum));
       }
     values.shrink_to_fit();
   }
 
 
 
-  template <int dim, typename Number>
+  template <int dim>
   NodeBlock<dim>
-  SharedRows<dim, Number>::row_sum(const unsigned int node) const
+  SharedRows<dim>::row_sum(const unsigned int node) const
   {
     return unpacked(row_sums[node]);
   }
 
 
 
-  template <int dim, typename Number>
+  template <int dim>
   void
-  SharedRows<dim, Number>::set_row_sum(const unsigned int    node,
-                                       const NodeBlock<dim> &block)
+  SharedRows<dim>::set_row_sum(const unsigned int    node,
+                               const NodeBlock<dim> &block)
   {
-    row_sums[node] = packed<dim, Number>(block);
+    row_sums[node] = packed<dim>(block);
   }
 
 
 
-  template <int dim, typename Number>
+  template <int dim>
   std::pair<NodeBlock<dim>, Tensor<1, dim>>
-  SharedRows<dim, Number>::diagonal_block(const unsigned int node) const
+  SharedRows<dim>::diagonal_block(const unsigned int node) const
   {
     const Row                                &row = rows[node];
     std::pair<NodeBlock<dim>, Tensor<1, dim>> result{row_sum(node), {}};
@@ -252,9 +248,9 @@ namespace Viscoplastic
 
 
 
-  template <int dim, typename Number>
-  RowTable<dim, Number>
-  SharedRows<dim, Number>::table() const
+  template <int dim>
+  RowTable<dim>
+  SharedRows<dim>::table() const
   {
     return {static_cast<unsigned int>(rows.size()),
             rows.data(),
@@ -265,58 +261,43 @@ namespace Viscoplastic
 
 
 
-  template <int dim, typename Number>
+  template <int dim>
   void
-  SharedRows<dim, Number>::vmult(Number *y, const Number *x) const
-  {
-    kernels.vmult(table(), y, x);
-  }
-
-
-
-  template <int dim, typename Number>
-  void
-  SharedRows<dim, Number>::residual(Number       *r,
-                                    const Number *x,
-                                    const Number *b) const
+  SharedRows<dim>::residual(float *r, const float *x, const float *b) const
   {
     kernels.residual(table(), r, x, b);
   }
 
 
 
-  template <int dim, typename Number>
+  template <int dim>
   void
-  SharedRows<dim, Number>::set_inverse_block(const unsigned int    node,
-                                             const NodeBlock<dim> &block)
+  SharedRows<dim>::set_inverse_block(const unsigned int    node,
+                                     const NodeBlock<dim> &block)
   {
     inverse.resize(rows.size());
-    inverse[node] = packed<dim, Number>(block);
+    inverse[node] = packed<dim>(block);
   }
 
 
 
-  template <int dim, typename Number>
+  template <int dim>
   void
-  SharedRows<dim, Number>::smooth_forward_from_zero(Number       *x,
-                                                    const Number *b) const
+  SharedRows<dim>::smooth_forward_from_zero(float *x, const float *b) const
   {
     kernels.smooth_forward_from_zero(table(), inverse.data(), x, b);
   }
 
 
 
-  template <int dim, typename Number>
+  template <int dim>
   void
-  SharedRows<dim, Number>::smooth_backward(Number *x, const Number *b) const
+  SharedRows<dim>::smooth_backward(float *x, const float *b) const
   {
     kernels.smooth_backward(table(), inverse.data(), x, b);
   }
 
 
 
-  template class SharedRows<2, float>;
-  template class SharedRows<3, float>;
-  template class SharedRows<2, double>;
-  template class SharedRows<3, double>;
+  VISCOPLASTIC_INSTANTIATE_CLASS(SharedRows);
 } // namespace Viscoplastic

@@ -230,7 +230,7 @@ namespace Viscoplastic
     const double       matrix  = n_dofs * matrix_bytes(dim);
     const double       vectors = n_dofs * 20. * 8.; // some 20
     if (kind == BulkSolverKind::geometric_multigrid)
-      return matrix + vectors + n_dofs * (dim == 2 ? 1200. : 1500.);
+      return matrix + vectors + n_dofs * (dim == 2 ? 950. : 1200.);
     // Algebraic multigrid has a second matrix without the prescribed rows, of
     // 12 bytes an entry, and ML's hierarchy.
     if (kind == BulkSolverKind::algebraic_multigrid)

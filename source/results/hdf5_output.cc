@@ -110,9 +110,7 @@ namespace Viscoplastic
         }
       for (const auto &[name, means] : body.means)
         {
-          std::vector<float> *const values = add(name, false);
-          for (const auto &cell : body.cells)
-            values->push_back(means[cell->active_cell_index()]);
+          *add(name, false) = means;
         }
       return result;
     }
@@ -274,11 +272,12 @@ namespace Viscoplastic
     H5open();
     const auto mesh_now = std::make_shared<DataSets>(mesh_of(body));
     const auto fields = std::make_shared<DataSets>(fields_of(body, *mesh_now));
-    std::set<unsigned int> cut_off;
+    std::set<unsigned int> beyond_range;
     for (unsigned int i = 0; i <= fields->size(); ++i)
-      if (cut_off_infinite(std::get<0>(
-            (i < fields->size() ? (*fields)[i] : (*mesh_now)[0]).values)))
-        cut_off.insert(i);
+      for (float &value : std::get<0>(
+             (i < fields->size() ? (*fields)[i] : (*mesh_now)[0]).values))
+        if (cut_off(value))
+          beyond_range.insert(i);
 
     const std::string record = record_name("solution", times.size() - 1);
     const bool        is_new =
@@ -339,7 +338,7 @@ namespace Viscoplastic
         replace_file(name + ".xml", grid);
         replace_file(of_series.first, of_series.second);
       });
-    return remark_on_range(record + ".h5", names, cut_off);
+    return remark_on_range(record + ".h5", names, beyond_range);
   }
 
 

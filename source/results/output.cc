@@ -256,13 +256,13 @@ namespace Viscoplastic
   void
   Output<dim>::write_in_background()
   {
-    const auto to_write = std::exchange(files, {});
+    auto to_write = std::exchange(files, {});
     if (Utilities::MPI::n_mpi_processes(communicator) == 1)
       try
         {
-          writing = std::async(std::launch::async, [to_write]() {
-            for (const auto &write : to_write)
-              write();
+          writing = std::async(std::launch::async, [to_write]() mutable {
+            for (auto &write : to_write)
+              std::exchange(write, nullptr)(); // with what it has kept
           });
           return;
         }
@@ -301,15 +301,14 @@ namespace Viscoplastic
 
 
   template <int dim>
-  template <int patch_dim, int spacedim>
+  template <typename Data>
   std::string
-  Output<dim>::write_vtu(const std::string               &name,
-                         PatchOutput<patch_dim, spacedim> data,
-                         const bool                       is_series)
+  Output<dim>::write_vtu(const std::string &name,
+                         Data               data,
+                         const bool         is_series)
   {
-    const std::set<unsigned int> cut_off =
-      cut_off_infinite(data.patches, data.names.size());
-    const std::vector<std::string> data_sets = data.names;
+    const std::set<unsigned int>   beyond_range = data.cut_off_infinite();
+    const std::vector<std::string> data_sets    = data.names;
 
     // What DataOutInterface::write_vtu_with_pvtu_record() writes; its errors
     // would name no file.
@@ -323,17 +322,14 @@ namespace Viscoplastic
         Utilities::int_to_string(r, Utilities::needed_digits(n_ranks - 1)) +
         ".vtu");
     const auto of_series = is_series ? list(name) : decltype(list(name))();
-    data.set_flags(vtk_flags());
-    files.push_back([data = std::make_shared<PatchOutput<patch_dim, spacedim>>(
-                       std::move(data)),
+    files.push_back([data = std::make_shared<Data>(std::move(data)),
                      path = path,
                      record,
                      pieces,
                      of_series,
                      rank]() {
-      std::ostringstream text;
-      data->write_vtu(text);
-      replace_file(path + pieces[rank], text.str());
+      unsigned int n = 0;
+      replace_file(path + pieces[rank], [&]() { return data->vtu_part(n++); });
       if (rank != 0)
         return;
       std::ostringstream list;
@@ -343,7 +339,7 @@ namespace Viscoplastic
         replace_file(file, text);
     });
 
-    return remark_on_range(record + ".pvtu", data_sets, cut_off);
+    return remark_on_range(record + ".pvtu", data_sets, beyond_range);
   }
 
 
@@ -405,8 +401,6 @@ namespace Viscoplastic
                           const Vector<double> *squared_estimate)
   {
     const StressSpace<dim> &stress_space = laws.stress_space;
-    const DoFHandler<dim>  &dof_handler  = stress_space.space.dof_handler;
-    const auto             &tria         = dof_handler.get_triangulation();
     DistributedVector       difference;
     BodyData<dim>           body{stress_space.space,
                        {},
@@ -419,25 +413,25 @@ namespace Viscoplastic
     const std::set<RecordedField> fields = BodyFields<dim>::of_output(scene);
     const BodyFields<dim>         means(laws, state, fields);
     for (std::string &name : BodyFields<dim>::names(fields))
-      body.means.emplace_back(std::move(name),
-                              Vector<double>(tria.n_active_cells()));
-    Vector<double> subdomain(tria.n_active_cells());
+      body.means.emplace_back(std::move(name), std::vector<float>());
+    const std::size_t n_fields = body.means.size();
+    body.means.emplace_back("subdomain", std::vector<float>());
     for (std::size_t c = 0; c < stress_space.space.cells.size(); ++c)
-      {
-        const auto        &cell           = stress_space.space.cells[c];
-        const unsigned int i              = cell->active_cell_index();
-        subdomain[i]                      = cell->subdomain_id();
-        const std::vector<double> of_cell = means.means(c);
-        for (std::size_t j = 0; j < of_cell.size(); ++j)
-          body.means[j].second[i] = of_cell[j];
-        if (scene.is_present(cell->material_id()))
+      if (const auto &cell = stress_space.space.cells[c];
+          scene.is_present(cell->material_id()))
+        {
+          const std::vector<double> of_cell = means.means(c);
+          for (std::size_t j = 0; j < n_fields; ++j)
+            body.means[j].second.push_back(of_cell[j]);
+          body.means.back().second.push_back(cell->subdomain_id());
           body.cells.push_back(cell);
-      }
-    body.means.emplace_back("subdomain", std::move(subdomain));
-    const auto add_root = [&](const std::string &name, Vector<double> squares) {
-      for (double &value : squares)
-        value = std::sqrt(value);
-      body.means.emplace_back(name, std::move(squares));
+        }
+    const auto add_root = [&](const std::string    &name,
+                              const Vector<double> &squares) {
+      std::vector<float> roots;
+      for (const auto &cell : body.cells)
+        roots.push_back(std::sqrt(squares[cell->active_cell_index()]));
+      body.means.emplace_back(name, std::move(roots));
     };
     if (squared_estimate != nullptr)
       add_root("estimator", *squared_estimate);
@@ -456,7 +450,7 @@ namespace Viscoplastic
       remark = write_in_hdf5(body, state.t);
     if (is_hdf5 && degrees == 0.)
       return remark;
-    PatchOutput<dim, dim> patches = make_patches(scene, body);
+    BodyOutput<dim> output(scene, body);
     if constexpr (dim == 2)
       if (degrees > 0.)
         {
@@ -468,9 +462,10 @@ namespace Viscoplastic
                    !scene.is_present(
                      body.cells[c]->neighbor(f)->material_id())))
                 edges.emplace_back(c, f);
-          write_vtu("revolved", revolved(patches, edges, degrees));
+          output.make_patches();
+          write_vtu("revolved", revolved(output, edges, degrees));
         }
-    return is_hdf5 ? remark : write_vtu("solution", std::move(patches));
+    return is_hdf5 ? remark : write_vtu("solution", std::move(output));
   }
 
 

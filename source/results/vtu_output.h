@@ -6,11 +6,16 @@
 #include <viscoplastic_contact/discretization/admissible_space.h>
 #include <viscoplastic_contact/results/unit_labels.h>
 
+#include <zlib.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
+#include <cstring>
 #include <limits>
 #include <set>
+#include <sstream>
 #include <string>
 #include <tuple>
 #include <utility>
@@ -40,8 +45,8 @@ namespace Viscoplastic
     std::vector<Cell> cells;
     /// Cartesian fields on `relevant`, with their names.
     std::vector<std::pair<std::string, const DistributedVector *>> vectors;
-    /// Values by the index of active cells.
-    std::vector<std::pair<std::string, Vector<double>>> means;
+    /// Values in the order of `cells`.
+    std::vector<std::pair<std::string, std::vector<float>>> means;
   };
 
 
@@ -49,48 +54,26 @@ namespace Viscoplastic
   /// Files have single precision. What is beyond its range, and would be
   /// infinite there, becomes its largest number: ParaView cannot scale colors
   /// to infinite values. Returns whether this was needed.
-  inline bool
-  cut_off_infinite(std::vector<float> &values)
+  template <typename Number>
+  bool
+  cut_off(Number &value)
   {
-    bool result = false;
-    for (float &value : values)
-      if (std::isinf(value))
-        {
-          value  = std::copysign(std::numeric_limits<float>::max(), value);
-          result = true;
-        }
-    return result;
+    constexpr float largest = std::numeric_limits<float>::max();
+    if (!(std::abs(value) > largest))
+      return false;
+    value = std::copysign(largest, value);
+    return true;
   }
 
 
 
-  /// The same of patches. Returns the data sets by their indices, and the
-  /// number of data sets for the coordinates.
-  template <int dim, int spacedim>
-  std::set<unsigned int>
-  cut_off_infinite(std::vector<DataOutBase::Patch<dim, spacedim>> &patches,
-                   const unsigned int                              n_data_sets)
+  /// Stronger compression takes ten times as long and saves a tenth.
+  inline DataOutBase::VtkFlags
+  vtk_flags()
   {
-    constexpr float        largest = std::numeric_limits<float>::max();
-    std::set<unsigned int> result;
-    for (auto &patch : patches)
-      {
-        for (unsigned int i = 0; i < n_data_sets; ++i)
-          for (unsigned int j = 0; j < patch.data.n_cols(); ++j)
-            if (float &value = patch.data(i, j); std::isinf(value))
-              {
-                value = std::copysign(largest, value);
-                result.insert(i);
-              }
-        for (Point<spacedim> &x : patch.vertices)
-          for (unsigned int d = 0; d < spacedim; ++d)
-            if (std::abs(x[d]) > largest)
-              {
-                x[d] = std::copysign(largest, x[d]);
-                result.insert(n_data_sets);
-              }
-      }
-    return result;
+    DataOutBase::VtkFlags flags;
+    flags.compression_level = DataOutBase::VtkFlags::best_speed;
+    return flags;
   }
 
 
@@ -130,6 +113,36 @@ namespace Viscoplastic
       names.insert(names.end(), is_vector ? dim : 1, name);
     }
 
+    /// Cut off the values of all patches. Returns the data sets concerned by
+    /// their indices, and the number of data sets for the coordinates.
+    virtual std::set<unsigned int>
+    cut_off_infinite()
+    {
+      std::set<unsigned int> result;
+      for (auto &patch : patches)
+        {
+          for (unsigned int i = 0; i < names.size(); ++i)
+            for (unsigned int j = 0; j < patch.data.n_cols(); ++j)
+              if (cut_off(patch.data(i, j)))
+                result.insert(i);
+          for (Point<dim> &x : patch.vertices)
+            for (unsigned int d = 0; d < dim; ++d)
+              if (cut_off(x[d]))
+                result.insert(names.size());
+        }
+      return result;
+    }
+
+    /// The parts of a VTU file in turn, behind the last one nothing.
+    virtual std::string
+    vtu_part(const unsigned int n)
+    {
+      std::ostringstream text;
+      if (n == 0)
+        DataOutBase::write_vtu(patches, names, vectors, vtk_flags(), text);
+      return text.str();
+    }
+
     /// A patch for all fields.
     DataOutBase::Patch<patch_dim, dim> &
     add_patch()
@@ -166,35 +179,192 @@ namespace Viscoplastic
 
   /// The body, a patch for each cell in the order of @p body, which a restart
   /// does not change; with the units of @p scene in the names, where deal.II
-  /// allows none in those of data.
+  /// allows none in those of data. Files are written field by field: all
+  /// patches would take more memory than the matrix.
   template <int dim>
-  PatchOutput<dim, dim>
-  make_patches(const Scene<dim> &scene, const BodyData<dim> &body)
+  class BodyOutput : public PatchOutput<dim, dim>
   {
-    PatchOutput<dim, dim> result;
-    for (const auto &field : body.vectors)
-      result.add_field(scene, field.first, true);
-    for (const auto &field : body.means)
-      result.add_field(scene, field.first, false);
-    result.patches.reserve(body.cells.size());
-    for (const auto &cell : body.cells)
-      {
-        auto &patch = result.add_patch();
+  public:
+    BodyOutput(const Scene<dim> &scene, const BodyData<dim> &body)
+      : vertices(body.space.relevant.n_elements() / dim)
+    {
+      for (const auto &[name, field] : body.vectors)
+        {
+          this->add_field(scene, name, true);
+          nodal.emplace_back(field->begin(),
+                             field->begin() + vertices.size() * dim);
+        }
+      for (const auto &[name, values] : body.means)
+        {
+          this->add_field(scene, name, false);
+          means.push_back(values);
+        }
+      nodes.reserve(body.cells.size() * n_vertices);
+      for (const auto &cell : body.cells)
         for (const unsigned int v : cell->vertex_indices())
           {
-            patch.vertices[v]       = cell->vertex(v);
-            const std::size_t first = body.space.relevant.index_within_set(
-              cell->vertex_dof_index(v, 0));
-            unsigned int row = 0;
-            for (const auto &[name, field] : body.vectors)
-              for (unsigned int d = 0; d < dim; ++d)
-                patch.data(row++, v) = field->begin()[first + d];
-            for (const auto &[name, means] : body.means)
-              patch.data(row++, v) = means[cell->active_cell_index()];
+            nodes.push_back(body.space.relevant.index_within_set(
+                              cell->vertex_dof_index(v, 0)) /
+                            dim);
+            vertices[nodes.back()] = cell->vertex(v);
           }
-      }
-    return result;
-  }
+    }
+
+    std::set<unsigned int>
+    cut_off_infinite() override
+    {
+      std::set<unsigned int> result;
+      unsigned int           row = 0;
+      for (auto &values : nodal)
+        {
+          for (std::size_t i = 0; i < values.size(); ++i)
+            if (cut_off(values[i]))
+              result.insert(row + i % dim);
+          row += dim;
+        }
+      for (auto &values : means)
+        {
+          for (float &value : values)
+            if (cut_off(value))
+              result.insert(row);
+          ++row;
+        }
+      for (Point<dim> &x : vertices)
+        for (unsigned int d = 0; d < dim; ++d)
+          if (cut_off(x[d]))
+            result.insert(row);
+      return result;
+    }
+
+    /// One part for the mesh, one for each field and one for the end, as
+    /// deal.II writes them.
+    std::string
+    vtu_part(const unsigned int n) override
+    {
+      const std::size_t n_cells = nodes.size() / n_vertices;
+      if (n_cells == 0)
+        return PatchOutput<dim, dim>::vtu_part(n);
+      std::ostringstream text;
+      if (n == 0)
+        {
+          DataOutBase::write_vtu_header(text, vtk_flags());
+          text << "<Piece NumberOfPoints=\"" << nodes.size()
+               << "\" NumberOfCells=\"" << n_cells << "\" >\n  <Points>\n"
+               << three_components([&](const unsigned int node,
+                                       const unsigned int d) -> float {
+                    return vertices[node][d];
+                  })
+               << "  </Points>\n\n";
+          std::vector<std::int32_t> points, ends;
+          for (std::size_t c = 0; c < n_cells; ++c)
+            {
+              for (const unsigned int v : {0, 1, 3, 2, 4, 5, 7, 6})
+                if (v < n_vertices)
+                  points.push_back(c * n_vertices + v);
+              ends.push_back((c + 1) * n_vertices);
+            }
+          const std::vector<std::uint8_t> types(n_cells, dim == 2 ? 9 : 12);
+          text << "  <Cells>\n"
+               << data_array("Int32\" Name=\"connectivity", points)
+               << data_array("Int32\" Name=\"offsets", ends)
+               << data_array("UInt8\" Name=\"types", types)
+               << "  </Cells>\n  <PointData Scalars=\"scalars\">\n";
+        }
+      else if (n <= nodal.size())
+        text << three_components(
+          [&](const unsigned int node, const unsigned int d) {
+            return nodal[n - 1][node * dim + d];
+          },
+          "Name=\"" + this->names[(n - 1) * dim] + "\" ");
+      else if (const std::size_t field = n - 1 - nodal.size();
+               field < means.size())
+        {
+          std::vector<float> values;
+          values.reserve(nodes.size());
+          for (const float mean : means[field])
+            values.insert(values.end(), n_vertices, mean);
+          text << data_array("Float32\" Name=\"" +
+                               this->names[nodal.size() * dim + field],
+                             values);
+        }
+      else if (field == means.size())
+        {
+          text << "  </PointData>\n </Piece>\n";
+          DataOutBase::write_vtu_footer(text);
+        }
+      return text.str();
+    }
+
+    /// Make the patches of all cells.
+    void
+    make_patches()
+    {
+      for (std::size_t c = 0; c < nodes.size() / n_vertices; ++c)
+        {
+          auto &patch = this->add_patch();
+          for (unsigned int v = 0; v < n_vertices; ++v)
+            {
+              const std::size_t node = nodes[c * n_vertices + v];
+              patch.vertices[v]      = vertices[node];
+              unsigned int row       = 0;
+              for (const auto &values : nodal)
+                for (unsigned int d = 0; d < dim; ++d)
+                  patch.data(row++, v) = values[node * dim + d];
+              for (const auto &values : means)
+                patch.data(row++, v) = values[c];
+            }
+        }
+    }
+
+  private:
+    static constexpr unsigned int n_vertices =
+      GeometryInfo<dim>::vertices_per_cell;
+
+    /// Numbers, compressed, in an element with this type (and name).
+    template <typename Number>
+    static std::string
+    data_array(const std::string &type, const std::vector<Number> &values)
+    {
+      const std::size_t          n_bytes = values.size() * sizeof(Number);
+      uLongf                     size    = compressBound(n_bytes);
+      std::vector<unsigned char> bytes(size);
+      const int                  status =
+        compress2(bytes.data(),
+                  &size,
+                  reinterpret_cast<const Bytef *>(values.data()),
+                  n_bytes,
+                  Z_BEST_SPEED);
+      AssertThrow(status == Z_OK, ExcInternalError());
+      bytes.resize(size);
+      // One block, its size, that of the last one, and the compressed one.
+      const std::array<std::uint32_t, 4> sizes{{1,
+                                                std::uint32_t(n_bytes),
+                                                std::uint32_t(n_bytes),
+                                                std::uint32_t(size)}};
+      std::vector<unsigned char>         header(sizeof(sizes));
+      std::memcpy(header.data(), sizes.data(), sizeof(sizes));
+      return "    <DataArray type=\"" + type + "\" format=\"binary\">\n" +
+             Utilities::encode_base64(header) +
+             Utilities::encode_base64(bytes) + "\n    </DataArray>\n";
+    }
+
+    /// Those of value(node, component) at the vertices of cells.
+    template <typename Function>
+    std::string
+    three_components(const Function &value, const std::string &name = "") const
+    {
+      std::vector<float> values;
+      values.reserve(nodes.size() * 3);
+      for (const unsigned int node : nodes)
+        for (unsigned int d = 0; d < 3; ++d)
+          values.push_back(d < dim ? value(node, d) : 0.f);
+      return data_array("Float32\" " + name + "NumberOfComponents=\"3", values);
+    }
+
+    std::vector<unsigned int>       nodes; // of cells
+    std::vector<Point<dim>>         vertices;
+    std::vector<std::vector<float>> nodal, means;
+  };
 
 
 
@@ -267,16 +437,5 @@ namespace Viscoplastic
         for (const auto &patch : section.patches)
           add(patch, {{{0, angle}, {1, angle}, {2, angle}, {3, angle}}});
     return result;
-  }
-
-
-
-  /// Stronger compression takes ten times as long and saves a tenth.
-  inline DataOutBase::VtkFlags
-  vtk_flags()
-  {
-    DataOutBase::VtkFlags flags;
-    flags.compression_level = DataOutBase::VtkFlags::best_speed;
-    return flags;
   }
 } // namespace Viscoplastic

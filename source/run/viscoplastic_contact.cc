@@ -240,12 +240,19 @@ namespace Viscoplastic
     // First: the seconds that steps are expected to take begin with the record.
     if (files)
       files->write(initial.time_step);
-    initial.end    = accepted;
     initial.report = initial_report;
+    // What the first step begins with has no such estimate; without a copy of
+    // all fields.
+    const ErrorEstimate errors         = accepted.errors;
+    const SpaceEstimate space_estimate = accepted.space_estimate;
+    initial.end                        = std::move(accepted);
     time_stepper->estimate_quantity(initial.end);
-    recorder.record(accepted,
+    recorder.record(initial.end,
                     initial,
-                    known_solution.errors(*discretization, accepted.state));
+                    known_solution.errors(*discretization, initial.end.state));
+    accepted                = std::move(initial.end);
+    accepted.errors         = errors;
+    accepted.space_estimate = space_estimate;
   }
 
 

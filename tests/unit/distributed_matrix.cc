@@ -155,4 +155,80 @@ namespace
     const auto places = sum.matrix.blocks_at(chosen);
     EXPECT_LT(sum.distance(part, &places), 1e-13);
   }
+
+
+
+  TYPED_TEST(DistributedMatrixTest, EqualRowsShareValues)
+  {
+    // A chain with a spring at one end.
+    constexpr int      dim     = TypeParam::value;
+    const unsigned int n_nodes = 60, n_links = n_nodes - 1;
+    const unsigned int rank = Utilities::MPI::this_mpi_process(MPI_COMM_WORLD),
+                       n_ranks =
+                         Utilities::MPI::n_mpi_processes(MPI_COMM_WORLD);
+    IndexSet owned(n_nodes * dim);
+    owned.add_range(n_nodes * rank / n_ranks * dim,
+                    n_nodes * (rank + 1) / n_ranks * dim);
+    DistributedMatrix::NodeLists lists;
+    FullMatrix<double>           link(2 * dim, 2 * dim);
+    for (unsigned int i = 0; i < 2 * dim; ++i)
+      for (unsigned int j = 0; j < 2 * dim; ++j)
+        link(i, j) = std::sin(i + j) + 1. / 3.;
+    std::vector<std::vector<types::global_dof_index>> dofs_of_links;
+    for (unsigned int l = 0; l < n_links; ++l)
+      if (owned.is_element(l * dim))
+        {
+          lists.nodes.insert(lists.nodes.end(), {l, l + 1});
+          lists.begin.push_back(lists.nodes.size());
+          dofs_of_links.emplace_back();
+          for (unsigned int i = 0; i < 2 * dim; ++i)
+            dofs_of_links.back().push_back(l * dim + i);
+        }
+    DistributedMatrix matrix;
+    matrix.reinit(owned, dim, lists, MPI_COMM_WORLD);
+    for (const auto &dofs : dofs_of_links)
+      matrix.add(dofs, link);
+    matrix.compress();
+    if (owned.is_element(0))
+      matrix.add_to_diagonal(0, 7.);
+    DistributedMatrix shared(matrix);
+    shared.share_rows();
+
+    std::set<const double *> blocks;
+    std::size_t              n_blocks = 0;
+    shared.for_each_block([&](unsigned int, unsigned int, const double *block) {
+      ++n_blocks;
+      blocks.insert(block);
+    });
+    EXPECT_LE(blocks.size(), 10);
+    EXPECT_GE(n_blocks, 2 * owned.n_elements() / dim - 1);
+    const auto expect_equal = [&] {
+      DistributedVector x(owned, MPI_COMM_WORLD), y(x), z(x);
+      for (const auto i : owned)
+        x.begin()[owned.index_within_set(i)] = std::sin(3. * i);
+      matrix.vmult(y, x);
+      shared.vmult(z, x);
+      y -= z;
+      EXPECT_EQ(y.linfty_norm(), 0.);
+      for (unsigned int i = 0; i < owned.n_elements(); ++i)
+        EXPECT_EQ(shared.diagonal(i), matrix.diagonal(i));
+      for (const auto i : owned)
+        for (unsigned int j = 0; j < n_nodes * dim; ++j)
+          EXPECT_EQ(shared.el(i, j), matrix.el(i, j));
+      const std::vector<bool> all(shared.n_columns(), true);
+      matrix.vmult(y, x, matrix.blocks_at(all));
+      shared.vmult(z, x, shared.blocks_at(all));
+      y -= z;
+      EXPECT_EQ(y.linfty_norm(), 0.);
+    };
+    expect_equal();
+    for (DistributedMatrix *const either : {&matrix, &shared})
+      {
+        if (!dofs_of_links.empty())
+          either->add(dofs_of_links.back(), link);
+        either->compress();
+        either->add_to_diagonal(3, 2.);
+      }
+    expect_equal();
+  }
 } // namespace

@@ -231,43 +231,4 @@ namespace
     const DistributedMatrix other;
     EXPECT_FALSE(renewed->renew(other));
   }
-
-
-
-  TYPED_TEST(NestedMeshes, ProductsAreThoseOfTheMatrix)
-  {
-    if (!has_four_doubles())
-      GTEST_SKIP() << "products are left to the matrix on this processor";
-    // The scenario has oblique planes and hanging nodes. On several ranks, rows
-    // have columns of nodes that are in no cell of the rank.
-    constexpr int     dim = TypeParam::value;
-    BulkScenario<dim> scenario(1, dim == 2 ? 4 : 3, true);
-    const auto        make = [&scenario](const double largest_shared_part) {
-      typename GeometricMultigrid<dim>::Options options;
-      options.largest_shared_part = largest_shared_part;
-      return GeometricMultigrid<dim>(scenario.matrix,
-                                     scenario.space->excluded(),
-                                     make_node_hierarchy(*scenario.space),
-                                     {},
-                                     scenario.face->restriction(),
-                                     options);
-    };
-    GeometricMultigrid<dim> multigrid = make(1.);
-    DistributedVector       x(scenario.start), y(x), expected(x);
-    const auto              keep_unknowns = [&](DistributedVector &v) {
-      for (std::size_t i = 0; i < scenario.space->excluded().size(); ++i)
-        if (scenario.space->excluded()[i])
-          v.begin()[i] = 0.;
-    };
-    keep_unknowns(x);
-    scenario.matrix.vmult(expected, x);
-    keep_unknowns(expected);
-    ASSERT_TRUE(multigrid.vmult_matrix(y, x));
-    y -= expected;
-    EXPECT_LT(y.linfty_norm(), 1e-10 * expected.linfty_norm());
-
-    EXPECT_FALSE(make(0.).vmult_matrix(y, x)) << "no two rows are equal";
-    multigrid.renew();
-    EXPECT_FALSE(multigrid.vmult_matrix(y, x)) << "of the former matrix";
-  }
 } // namespace

@@ -48,11 +48,10 @@ namespace
         }
     }
 
-    template <typename Number>
-    SharedRows<dim, Number>
+    SharedRows<dim>
     shared() const
     {
-      SharedRows<dim, Number> rows;
+      SharedRows<dim> rows;
       rows.set_values(matrix, {matrix.columns.begin(), matrix.columns.end()});
       return rows;
     }
@@ -62,19 +61,19 @@ namespace
 
 
 
-  template <int dim, typename Number>
+  template <int dim>
   void
   check_products(const double noise, const double tolerance)
   {
-    const Ring<dim>               ring(noise);
-    const SharedRows<dim, Number> rows = ring.template shared<Number>();
-    std::vector<Number>           x(ring.n * dim), b(x), y(x), r(x);
+    const Ring<dim>       ring(noise);
+    const SharedRows<dim> rows = ring.shared();
+    std::vector<float>    x(ring.n * dim), b(x), y(x), r(x);
     for (unsigned int i = 0; i < x.size(); ++i)
       {
         x[i] = std::sin(3. * i);
         b[i] = std::cos(5. * i);
       }
-    rows.vmult(y.data(), x.data());
+    rows.residual(y.data(), x.data(), r.data()); // of zero
     rows.residual(r.data(), x.data(), b.data());
     for (unsigned int i = 0; i < ring.n_owned; ++i)
       {
@@ -86,7 +85,7 @@ namespace
                              x[ring.matrix.columns[e] * dim + d];
         for (unsigned int c = 0; c < dim; ++c)
           {
-            EXPECT_NEAR(y[i * dim + c], expected[c], tolerance);
+            EXPECT_NEAR(-y[i * dim + c], expected[c], tolerance);
             EXPECT_NEAR(r[i * dim + c],
                         b[i * dim + c] - expected[c],
                         tolerance);
@@ -101,10 +100,8 @@ namespace
   TYPED_TEST(SharedRowsTest, MultiplyAsTheMatrixDoes)
   {
     constexpr int dim = TypeParam::value;
-    check_products<dim, double>(0., 1e-9);
-    check_products<dim, double>(0.1, 1e-9);
-    check_products<dim, float>(0., 1e-4);
-    check_products<dim, float>(0.1, 1e-4);
+    check_products<dim>(0., 1e-4);
+    check_products<dim>(0.1, 1e-4);
   }
 
 
@@ -113,25 +110,24 @@ namespace
   {
     constexpr int dim   = TypeParam::value;
     const auto    count = [](const double noise) {
-      return Ring<dim>(noise).template shared<double>().n_stored_blocks();
+      return Ring<dim>(noise).shared().n_stored_blocks();
     };
-    const std::size_t n_blocks =
-      Ring<dim>(0.).template shared<double>().n_blocks();
+    const std::size_t n_blocks = Ring<dim>(0.).shared().n_blocks();
     EXPECT_EQ(n_blocks, Ring<dim>::n_owned * 6);
     // There are two kinds of rows, with other lower neighbors at the ends.
     EXPECT_LE(count(0.), 20 * 6);
     EXPECT_EQ(count(1e-15), count(0.));
-    EXPECT_EQ(count(1e-8), n_blocks);
+    EXPECT_EQ(count(1e-5), n_blocks);
   }
 
 
 
   TYPED_TEST(SharedRowsTest, DiagonalBlocksAndCouplingsWithOthers)
   {
-    constexpr int           dim = TypeParam::value;
-    const Ring<dim>         ring(0.1);
-    SharedRows<dim, double> rows   = ring.template shared<double>();
-    const auto             &matrix = ring.matrix;
+    constexpr int   dim = TypeParam::value;
+    const Ring<dim> ring(0.1);
+    SharedRows<dim> rows   = ring.shared();
+    const auto     &matrix = ring.matrix;
     for (unsigned int i = 0; i < ring.n_owned; ++i)
       {
         NodeBlock<dim> diagonal;
@@ -144,8 +140,8 @@ namespace
               for (unsigned int d = 0; d < dim; ++d)
                 others[c] += std::abs(matrix.values[e][c][d]);
         const auto found = rows.diagonal_block(i);
-        EXPECT_NEAR((found.first - diagonal).norm(), 0., 1e-9);
-        EXPECT_NEAR((found.second - others).norm(), 0., 1e-9);
+        EXPECT_NEAR((found.first - diagonal).norm(), 0., 1e-4);
+        EXPECT_NEAR((found.second - others).norm(), 0., 1e-4);
       }
     NodeBlock<dim> spring;
     spring[0][1]                = 3.;
@@ -153,7 +149,7 @@ namespace
     rows.set_row_sum(4, rows.row_sum(4) + spring);
     EXPECT_NEAR((rows.diagonal_block(4).first - before - spring).norm(),
                 0.,
-                1e-14);
+                1e-4);
   }
 
 
@@ -161,17 +157,17 @@ namespace
   TYPED_TEST(SharedRowsTest, SweepsSolveTriangularSystems)
   {
     // Forward from zero (D + L) x = b; backward (D + U) x = b - L x_old.
-    constexpr int           dim = TypeParam::value;
-    const Ring<dim>         ring(0.1);
-    SharedRows<dim, double> rows = ring.template shared<double>();
+    constexpr int   dim = TypeParam::value;
+    const Ring<dim> ring(0.1);
+    SharedRows<dim> rows = ring.shared();
     for (unsigned int i = 0; i < ring.n_owned; ++i)
       rows.set_inverse_block(i, invert(rows.diagonal_block(i).first));
-    std::vector<double> x(ring.n * dim, 7.), b(x.size());
+    std::vector<float> x(ring.n * dim, 7.), b(x.size());
     for (unsigned int i = 0; i < b.size(); ++i)
       b[i] = std::cos(5. * i);
-    const auto row_times = [&](const unsigned int         i,
-                               const std::vector<double> &lower,
-                               const std::vector<double> &upper) {
+    const auto row_times = [&](const unsigned int        i,
+                               const std::vector<float> &lower,
+                               const std::vector<float> &upper) {
       Tensor<1, dim> result;
       const auto    &matrix = ring.matrix;
       for (auto e = matrix.begin[i]; e < matrix.begin[i + 1]; ++e)
@@ -185,38 +181,38 @@ namespace
     };
 
     rows.smooth_forward_from_zero(x.data(), b.data());
-    std::vector<double> diagonal_only(x);
+    std::vector<float> diagonal_only(x);
     for (unsigned int i = 0; i < ring.n_owned; ++i)
       {
         std::fill(diagonal_only.begin(), diagonal_only.end(), 0.);
         std::copy_n(x.begin() + i * dim, dim, diagonal_only.begin() + i * dim);
         const Tensor<1, dim> left = row_times(i, x, diagonal_only);
         for (unsigned int c = 0; c < dim; ++c)
-          EXPECT_NEAR(left[c], b[i * dim + c], 1e-8);
+          EXPECT_NEAR(left[c], b[i * dim + c], 1e-4);
       }
     EXPECT_EQ(x.back(), 7.) << "of another rank";
 
     std::fill(x.begin() + ring.n_owned * dim, x.end(), 0.3);
-    const std::vector<double> old(x);
+    const std::vector<float> old(x);
     rows.smooth_backward(x.data(), b.data());
     for (unsigned int i = 0; i < ring.n_owned; ++i)
       {
         const Tensor<1, dim> left = row_times(i, old, x);
         for (unsigned int c = 0; c < dim; ++c)
-          EXPECT_NEAR(left[c], b[i * dim + c], 1e-8);
+          EXPECT_NEAR(left[c], b[i * dim + c], 1e-4);
       }
   }
 
 
 
   /// Kernels of both kinds agree up to rounding.
-  template <int dim, typename Number>
+  template <int dim>
   void
   check_kernels(const double tolerance)
   {
-    using Table = RowTable<dim, Number>;
+    using Table = RowTable<dim>;
     // Blocks are at any position: memory is aligned for two doubles only.
-    std::vector<PackedBlock<dim, Number>> blocks(9);
+    std::vector<PackedBlock<dim>> blocks(9);
     for (unsigned int k = 0; k < blocks.size(); ++k)
       for (unsigned int p = 0; p < blocks[k].n_parts; ++p)
         for (unsigned int e = 0; e < (dim == 2 ? 4 : 3); ++e)
@@ -225,23 +221,19 @@ namespace
                                                 {3, 3, 1, 2},
                                                 {0, 1, 0, 1}};
     const std::vector<unsigned int>        columns{1, 2, 3, 0, 3};
-    const RowKernels<dim, Number>          fastest = row_kernels<dim, Number>(),
-                                  portable =
-                                    portable_row_kernels<dim, Number>();
+    const RowKernels<dim>                  fastest = row_kernels<dim>(),
+                          portable = portable_row_kernels<dim>();
     for (const unsigned int shift : {0, 1})
       {
-        const PackedBlock<dim, Number> *const begin = blocks.data() + shift;
-        const Table         A{3, rows.data(), columns.data(), begin, begin + 5};
-        std::vector<Number> b(4 * dim), x(b), y(b), z(b);
+        const PackedBlock<dim> *const begin = blocks.data() + shift;
+        const Table        A{3, rows.data(), columns.data(), begin, begin + 5};
+        std::vector<float> b(4 * dim), x(b), y(b), z(b);
         for (unsigned int i = 0; i < b.size(); ++i)
           b[i] = std::cos(2. * i);
         const auto expect_equal = [&] {
           for (unsigned int i = 0; i < b.size(); ++i)
             EXPECT_NEAR(y[i], z[i], tolerance) << "shift " << shift;
         };
-        fastest.vmult(A, y.data(), b.data());
-        portable.vmult(A, z.data(), b.data());
-        expect_equal();
         fastest.residual(A, y.data(), b.data(), x.data());
         portable.residual(A, z.data(), b.data(), x.data());
         expect_equal();
@@ -259,7 +251,6 @@ namespace
   TYPED_TEST(SharedRowsTest, KernelsOfEveryProcessorAgree)
   {
     constexpr int dim = TypeParam::value;
-    check_kernels<dim, double>(1e-12);
-    check_kernels<dim, float>(1e-4);
+    check_kernels<dim>(1e-4);
   }
 } // namespace

@@ -94,7 +94,9 @@ namespace Viscoplastic
     double
     diagonal(const std::size_t i) const
     {
-      return values[diagonal_position(i)];
+      return block(i / pattern->dim,
+                   pattern->begin[i / pattern->dim])[(i % pattern->dim) *
+                                                     (pattern->dim + 1)];
     }
 
     /// The entry of an owned row; zero outside of the pattern.
@@ -107,10 +109,9 @@ namespace Viscoplastic
     void
     for_each_block(const Function &act) const
     {
-      const std::size_t size = n_entries_of_block();
       for (unsigned int i = 0; i < pattern->n_owned; ++i)
         for (std::size_t e = pattern->begin[i]; e < pattern->begin[i + 1]; ++e)
-          act(i, pattern->columns[e], &values[e * size]);
+          act(i, pattern->columns[e], block(i, e));
     }
 
     /// The whole rows of owned nodes, columns in ascending order of their local
@@ -143,7 +144,7 @@ namespace Viscoplastic
     const double *
     block(const Place &place) const
     {
-      return &values[place.entry * n_entries_of_block()];
+      return block(place.row, place.entry);
     }
 
     /// The blocks with a row or a column among these nodes, by local numbers of
@@ -168,14 +169,16 @@ namespace Viscoplastic
         const FullMatrix<double>                   &matrix);
 
     void
-    add_to_diagonal(const std::size_t i, const double value)
-    {
-      values[diagonal_position(i)] += value;
-    }
+    add_to_diagonal(const std::size_t i, const double value);
 
     /// Pass on what has been added to rows of other ranks. Collective.
     void
     compress();
+
+    /// Have rows with the same values share them, if most can, as on uniform
+    /// meshes. What is added later takes them apart again.
+    void
+    share_rows();
 
   private:
     static constexpr std::size_t no_entry = -1;
@@ -220,16 +223,27 @@ namespace Viscoplastic
       return pattern->dim * pattern->dim;
     }
 
-    /// The diagonal is the first block of each row.
-    std::size_t
-    diagonal_position(const std::size_t i) const
+    /// The block of an entry of an owned row; the diagonal is the first one.
+    const double *
+    block(const unsigned int row, const std::size_t entry) const
     {
-      const unsigned int dim = pattern->dim;
-      return pattern->begin[i / dim] * n_entries_of_block() +
-             (i % dim) * (dim + 1);
+      return &values[(first_block()[row] + entry - pattern->begin[row]) *
+                     n_entries_of_block()];
     }
+
+    const std::vector<std::size_t> &
+    first_block() const
+    {
+      return shared_block.empty() ? pattern->begin : shared_block;
+    }
+
+    /// Give each row values of its own.
+    void
+    take_apart();
 
     std::shared_ptr<const Pattern> pattern;
     std::vector<double>            values;
+    /// Where rows share values: the number of their first block among these.
+    std::vector<std::size_t> shared_block;
   };
 } // namespace Viscoplastic

@@ -4,6 +4,7 @@
 #include <nlohmann/json_fwd.hpp>
 
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <string>
 
@@ -38,6 +39,11 @@ namespace Viscoplastic
   replace_file(const std::string &name,
                const std::string &bytes,
                const bool         to_disk = false);
+
+  /// The same from parts: what @p next returns until that is nothing.
+  void
+  replace_file(const std::string                  &name,
+               const std::function<std::string()> &next);
 
   /// Put a file to disk, with what other streams have written into it.
   void

@@ -84,6 +84,8 @@ namespace Viscoplastic
     /// The owned cells, in the order of owned_cells(): that of all data that
     /// have values in cells.
     const std::vector<typename DoFHandler<dim>::active_cell_iterator> cells;
+    /// Numbers of their shapes (see CellShapes).
+    const std::vector<unsigned int> shapes;
 
     /// Whether there is a rigid motion that only contact can prevent. The same
     /// on all ranks.

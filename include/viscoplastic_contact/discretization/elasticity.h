@@ -11,7 +11,7 @@
 namespace Viscoplastic
 {
   /// The elastic tensor of each owned cell, taken at the cell's center; one
-  /// object if it is the same everywhere.
+  /// object for a material in which it is the same everywhere.
   template <int dim>
   class ElasticModuli
   {
@@ -27,7 +27,7 @@ namespace Viscoplastic
     const Stiffness &
     operator()(const std::size_t cell) const
     {
-      return is_uniform ? moduli[0] : moduli[cell];
+      return moduli[number.empty() ? 0 : number[cell]];
     }
 
     /// Largest Poisson's ratio of the body, also of materials that are absent
@@ -39,9 +39,9 @@ namespace Viscoplastic
     }
 
   private:
-    std::vector<Stiffness> moduli;
-    bool                   is_uniform;
-    double                 max_nu;
+    std::vector<Stiffness>    moduli;
+    std::vector<unsigned int> number; // by cell; empty if there is one for all
+    double                    max_nu;
   };
 
 

@@ -8,7 +8,6 @@
 #include <viscoplastic_contact/laws/strain.h>
 
 #include <array>
-#include <map>
 #include <memory>
 #include <utility>
 #include <vector>
@@ -19,29 +18,6 @@ namespace Viscoplastic
   /// coefficients: StressSpace::n_samples tensors for each owned cell. Always
   /// tensors of three dimensions: plane strain has z_zz.
   using IrreversibleStress = std::vector<SymmetricTensor<2, 3>>;
-
-
-  /// Numbers for the shapes of cells: the same for cells that differ by a
-  /// translation, on sections of rings by one along the axis.
-  template <int dim>
-  class CellShapes
-  {
-  public:
-    explicit CellShapes(const PlaneModel model)
-      : is_of_ring(model == PlaneModel::axisymmetric)
-    {}
-
-    /// The number of a cell's shape, and whether it is new.
-    std::pair<unsigned int, bool>
-    add(const typename DoFHandler<dim>::active_cell_iterator &cell);
-
-  private:
-    static constexpr unsigned int key_size =
-      dim * (GeometryInfo<dim>::vertices_per_cell - 1) + 3;
-
-    const bool                                                 is_of_ring;
-    std::map<std::array<std::int64_t, key_size>, unsigned int> number_of;
-  };
 
 
   /// The space Q_h of stresses, the paper's H^h: symmetric tensors that are
@@ -80,26 +56,26 @@ namespace Viscoplastic
     std::size_t
     n_cells() const
     {
-      return shapes.size();
+      return space.cells.size();
     }
 
     double
     volume(const std::size_t cell) const
     {
-      return volumes[shapes[cell]];
+      return volumes[space.shapes[cell]];
     }
 
     double
     weight(const std::size_t cell, const unsigned int s) const
     {
-      return weights[shapes[cell] * n_samples + s];
+      return weights[space.shapes[cell] * n_samples + s];
     }
 
     Point<dim>
     position(const std::size_t cell, const unsigned int s) const
     {
       return space.cells[cell]->vertex(0) +
-             positions[shapes[cell] * n_samples + s];
+             positions[space.shapes[cell] * n_samples + s];
     }
 
     /// P_Qh eps(u) in a cell: the mean strain, or that at the Gauss points.
@@ -205,9 +181,8 @@ namespace Viscoplastic
       return strain(sum, zz);
     }
 
-    std::vector<unsigned int> nodes;  // n_vertices a cell
-    std::vector<unsigned int> shapes; // of cells
-    /// Of shapes: 1 each, then at their samples n_vertices each, ...
+    std::vector<unsigned int> nodes; // n_vertices a cell
+    /// Of shapes of cells: 1 each, then at their samples n_vertices each, ...
     std::vector<double>         volumes;
     std::vector<Tensor<1, dim>> gradients;
     /// ... the hoop strain of u_r = 1 at each vertex, likewise; empty unless

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
-#include <deal.II/fe/fe_system.h>
 #include <deal.II/lac/la_parallel_vector.h>
 
 #include <viscoplastic_contact/error/local_cells.h>
@@ -137,12 +136,12 @@ namespace Viscoplastic
     {
       std::vector<unsigned int> cells;
       double                    largest_share; // q of singular points
-      /// Of the cells around, each with the inverse of its width: so linear
-      /// strains are met also where cells of two sizes meet.
-      NodalVector inverse_weight;
+      /// By node, of the cells around, each with the inverse of its width: so
+      /// linear strains are met also where cells of two sizes meet.
+      std::vector<double> inverse_weight;
       /// Of those around a node at the boundary with a vertex inside opposite
       /// to it.
-      NodalVector inverse_inner_weight;
+      std::vector<double> inverse_inner_weight;
       /// Those that have the material at all of their parents take what is
       /// between them.
       std::vector<HangingNode> hanging_nodes;
@@ -224,6 +223,10 @@ namespace Viscoplastic
           const std::vector<SymmetricTensor<4, 3>> *tangents,
           OfDual                                   &dual) const;
 
+    /// Scale strains at owned nodes by numbers for each node.
+    void
+    scale(NodalVector &strains, const std::vector<double> &factors) const;
+
     /// Set the shear along planes of symmetry to zero.
     void
     mirror() const;
@@ -252,8 +255,6 @@ namespace Viscoplastic
     /// The components that strains have, as SymmetricTensor counts them: in the
     /// plane, in the plane and around an axis, or all.
     const std::vector<unsigned int> components;
-    const FESystem<dim>             fe;
-    DoFHandler<dim>                 dof_handler;
     /// Local places of the first component at the vertices of owned cells.
     std::vector<std::array<unsigned int, n_vertices>> nodes;
     /// The vertices of owned cells on faces where the part ends, but for planes
@@ -273,7 +274,7 @@ namespace Viscoplastic
     /// eps* at the nodes; kept, since a new vector for each step costs as much
     /// as to fill it.
     mutable NodalVector values;
-    /// Sums and maxima over the cells around nodes.
+    /// Sums and maxima over the cells around nodes, for singular points.
     mutable NodalVector sums, maxima;
   };
 } // namespace Viscoplastic

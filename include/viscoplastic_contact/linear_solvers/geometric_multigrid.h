@@ -32,10 +32,6 @@ namespace Viscoplastic
   public:
     struct Options
     {
-      /// Where more than this part of the blocks of the matrix differ, or on a
-      /// processor that does not multiply four doubles at a time, products with
-      /// it take as long as in the format that it has, and are left to it.
-      double largest_shared_part = 0.25;
       /// The first level is the finest mesh with at most so many unknowns, or
       /// the first mesh.
       unsigned int coarse_size = 100;
@@ -69,10 +65,6 @@ namespace Viscoplastic
     vmult_untruncated(DistributedVector       &y,
                       const DistributedVector &x) const override;
 
-    bool
-    vmult_matrix(DistributedVector       &y,
-                 const DistributedVector &x) const override;
-
     /// The truncation for which smoothed aggregation was built.
     std::optional<PreconditionerState>
     state() const override;
@@ -82,15 +74,10 @@ namespace Viscoplastic
 
   private:
     struct Level;
-    struct Operator;
 
     /// Give all levels the values of the present matrix.
     void
     fill();
-
-    /// Keep the matrix in double precision if its rows share values.
-    void
-    share_matrix(const BlockRows<dim> &matrix_rows);
 
     /// The rigid body modes on the first level, one after the other.
     std::vector<double>
@@ -128,10 +115,6 @@ namespace Viscoplastic
     std::unique_ptr<CoarseSolver<dim>> coarse;
     /// The truncation for which smoothed aggregation was built.
     std::optional<FaceTruncation> built_for;
-    const double                  largest_shared_part;
-    /// The matrix in double precision, where its rows share values; none after
-    /// a renewal.
-    std::unique_ptr<Operator> shared_matrix;
     /// The unit of stiffness on the levels, whose single precision has a small
     /// range.
     double unit = 1.;

@@ -57,12 +57,6 @@ namespace Viscoplastic
     set_interpolation(const Interpolation       &interpolation,
                       const MultigridLevel<dim> &coarser);
 
-    const SharedRows<dim, float> &
-    matrix_rows() const
-    {
-      return rows;
-    }
-
     NodeBlock<dim>
     row_sum(const unsigned int node) const
     {
@@ -114,7 +108,7 @@ namespace Viscoplastic
     std::shared_ptr<const Utilities::MPI::Partitioner> partitioner;
     bool                                               is_serial;
 
-    SharedRows<dim, float> rows;
+    SharedRows<dim> rows;
 
     std::vector<std::size_t>  parent_begin;
     std::vector<unsigned int> parents;

@@ -61,15 +61,6 @@ namespace Viscoplastic
       return numbers::invalid_unsigned_int;
     }
 
-    /// y := K x to some ten digits, zero on excluded components, if this takes
-    /// less time than with the matrix itself; otherwise nothing, and false.
-    virtual bool
-    vmult_matrix(DistributedVector & /*y*/,
-                 const DistributedVector & /*x*/) const
-    {
-      return false;
-    }
-
     /// A solve took @p iterations to reduce the residual by @p decades.
     virtual void
     learn(const unsigned int /*iterations*/, const double /*decades*/)

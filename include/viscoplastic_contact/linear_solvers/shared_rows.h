@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
+#include <viscoplastic_contact/base/row_kernels.h>
 #include <viscoplastic_contact/linear_solvers/block_rows.h>
-#include <viscoplastic_contact/linear_solvers/row_kernels.h>
 
 #include <cstddef>
 #include <functional>
@@ -15,13 +15,13 @@ namespace Viscoplastic
   /// values, of which uniform meshes have many, share them. What is read is
   /// what a product costs. Nodes have local numbers, the owned ones first.
   ///
-  /// Values are rounded to what makes rows of equal cells equal: in single
-  /// precision to its last digit but one, in double precision to ten digits.
-  template <int dim, typename Number>
+  /// Values are rounded to what makes rows of equal cells equal: to the last
+  /// digit but one of single precision.
+  template <int dim>
   class SharedRows
   {
   public:
-    using Block = PackedBlock<dim, Number>;
+    using Block = PackedBlock<dim>;
 
     /// @p local_columns: the local numbers of the columns of @p matrix.
     void
@@ -51,13 +51,9 @@ namespace Viscoplastic
     std::pair<NodeBlock<dim>, Tensor<1, dim>>
     diagonal_block(const unsigned int node) const;
 
-    /// y := A x.
-    void
-    vmult(Number *y, const Number *x) const;
-
     /// r := b - A x.
     void
-    residual(Number *r, const Number *x, const Number *b) const;
+    residual(float *r, const float *x, const float *b) const;
 
     /// Set the inverse of a node's diagonal block, by which Gauss-Seidel
     /// multiplies residuals.
@@ -68,17 +64,17 @@ namespace Viscoplastic
     /// Values of nodes that are not owned do not change; forward they count as
     /// zero.
     void
-    smooth_forward_from_zero(Number *x, const Number *b) const;
+    smooth_forward_from_zero(float *x, const float *b) const;
     void
-    smooth_backward(Number *x, const Number *b) const;
+    smooth_backward(float *x, const float *b) const;
 
   private:
-    using Row = typename RowTable<dim, Number>::Row;
+    using Row = typename RowTable<dim>::Row;
 
-    RowTable<dim, Number>
+    RowTable<dim>
     table() const;
 
-    const RowKernels<dim, Number> kernels = row_kernels<dim, Number>();
+    const RowKernels<dim> kernels = row_kernels<dim>();
 
     std::vector<Row>          rows;
     std::vector<unsigned int> columns;

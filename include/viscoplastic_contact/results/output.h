@@ -17,8 +17,6 @@
 
 namespace Viscoplastic
 {
-  template <int patch_dim, int dim>
-  class PatchOutput;
   template <int dim>
   struct BodyData;
   struct DataSet;
@@ -108,11 +106,11 @@ namespace Viscoplastic
                   const ContactFace<dim> *face);
     /// Have the piece of this rank and, on rank 0, the record of all of them
     /// and that of the series written by the next write_in_background().
-    template <int patch_dim, int spacedim>
+    template <typename Data>
     std::string
-    write_vtu(const std::string               &name,
-              PatchOutput<patch_dim, spacedim> data,
-              const bool                       is_series = true);
+    write_vtu(const std::string &name,
+              Data               data, // a PatchOutput
+              const bool         is_series = true);
     /// As write_vtu(), of the body.
     std::string
     write_in_hdf5(const BodyData<dim> &body, const double t);

@@ -131,7 +131,7 @@ def expected_memory(solver, demand):
     # 5 or 14 blocks a node, with their columns; some 20 vectors.
     matrix, vectors = n * (90.0 if is_2d else 14.0 * 76.0 / 3.0), n * 20.0 * 8.0
     if solver == GEOMETRIC:
-        return 1e-6 * (matrix + vectors + n * (1200.0 if is_2d else 1500.0))
+        return 1e-6 * (matrix + vectors + n * (950.0 if is_2d else 1200.0))
     # A second matrix without the prescribed rows, of 12 bytes an entry, and ML.
     if solver == ALGEBRAIC:
         rest = 18.0 * 12.0 + 850.0 if is_2d else 81.0 * 12.0 + 2700.0

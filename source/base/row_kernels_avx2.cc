@@ -8,23 +8,33 @@
 
 namespace Viscoplastic
 {
-  template <int dim, typename Number>
-  RowKernels<dim, Number>
+  template <int dim>
+  RowKernels<dim>
   avx2_row_kernels()
   {
-    return kernels_of_this_file<dim, Number>();
+    return kernels_of_this_file<dim>();
   }
 
 
 
-  template RowKernels<2, float>
+  template <int dim>
+  SymmetricProduct<dim>
+  avx2_product()
+  {
+    return multiply<dim>;
+  }
+
+
+
+  template RowKernels<2>
   avx2_row_kernels();
-  template RowKernels<3, float>
+  template RowKernels<3>
   avx2_row_kernels();
-  template RowKernels<2, double>
-  avx2_row_kernels();
-  template RowKernels<3, double>
-  avx2_row_kernels();
+
+  template SymmetricProduct<2>
+  avx2_product<2>();
+  template SymmetricProduct<3>
+  avx2_product<3>();
 } // namespace Viscoplastic
 
 #endif

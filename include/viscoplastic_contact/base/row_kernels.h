@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <cstddef>
+
+namespace Viscoplastic
+{
+  /// A block of a matrix in the registers of any processor: four numbers at a
+  /// time, which are a row of a 3 x 3 block and zero, or both rows of a 2 x 2
+  /// block.
+  template <int dim>
+  struct PackedBlock
+  {
+    using FourNumbers
+      __attribute__((vector_size(4 * sizeof(float)), aligned(16))) = float;
+
+    static constexpr unsigned int n_parts = dim == 2 ? 1 : dim;
+
+    FourNumbers parts[n_parts];
+  };
+
+
+  /// The data of products with rows of a matrix, as plain pointers: see
+  /// SharedRows.
+  template <int dim>
+  struct RowTable
+  {
+    /// A row without the diagonal: columns of lower owned nodes first, and
+    /// where the values begin.
+    struct Row
+    {
+      std::size_t  columns, values;
+      unsigned int n_lower, n;
+    };
+
+    unsigned int            n_rows;
+    const Row              *rows;
+    const unsigned int     *columns;
+    const PackedBlock<dim> *values, *row_sums;
+  };
+
+
+  /// The innermost loops of multigrid, compiled for a kind of processor. See
+  /// SharedRows.
+  template <int dim>
+  struct RowKernels
+  {
+    using Table = RowTable<dim>;
+    using Block = PackedBlock<dim>;
+
+    void (*residual)(const Table &A, float *r, const float *x, const float *b);
+    void (*smooth_forward_from_zero)(const Table &A,
+                                     const Block *inverse,
+                                     float       *x,
+                                     const float *b);
+    void (*smooth_backward)(const Table &A,
+                            const Block *inverse,
+                            float       *x,
+                            const float *b);
+  };
+
+  /// The rows of a symmetric matrix in double precision: the diagonal and the
+  /// upper triangle, with the number of each one's first block.
+  struct SymmetricRows
+  {
+    unsigned int        n_rows;
+    const std::size_t  *begin, *first_block;
+    const unsigned int *columns;
+    const double       *values;
+  };
+
+  /// y := A x.
+  template <int dim>
+  using SymmetricProduct = void (*)(const SymmetricRows &A,
+                                    double              *y,
+                                    const double        *x);
+
+  /// The kernels for any processor that the program runs on.
+  template <int dim>
+  RowKernels<dim>
+  portable_row_kernels();
+  template <int dim>
+  SymmetricProduct<dim>
+  portable_product();
+
+#ifdef VISCOPLASTIC_CONTACT_HAS_AVX2_KERNELS
+  /// The kernels for x86 with the extensions AVX2 and FMA (2013 and later).
+  template <int dim>
+  RowKernels<dim>
+  avx2_row_kernels();
+  template <int dim>
+  SymmetricProduct<dim>
+  avx2_product();
+#endif
+
+  /// The fastest kernels for the processor at hand.
+  template <int dim>
+  RowKernels<dim>
+  row_kernels();
+  template <int dim>
+  SymmetricProduct<dim>
+  symmetric_product();
+} // namespace Viscoplastic

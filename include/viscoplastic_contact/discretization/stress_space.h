@@ -130,7 +130,7 @@ namespace Viscoplastic
                           const SymmetricTensor<2, 3> *b) const
     {
       return moduli(cell).complementary_product(
-        n_samples, &weights[shapes[cell] * n_samples], a, b);
+        n_samples, &weights[space.shapes[cell] * n_samples], a, b);
     }
 
     /// sigma = E eps(u) + z, cell means; @p z may be empty (no viscosity).

@@ -101,8 +101,8 @@ namespace Viscoplastic
 
 
 
-    /// Of the mesh and, where there are, the axial ones: see
-    /// AdmissibleSpace::axial.
+    /// Return the degrees of freedom of the mesh and, if any, the axial ones,
+    /// see AdmissibleSpace::axial.
     template <int dim>
     IndexSet
     with_axial_dofs(const DoFHandler<dim> &dof_handler,
@@ -125,7 +125,7 @@ namespace Viscoplastic
 
 
 
-    /// The diagonal of the box around the coarse mesh, which all ranks know.
+    /// Return the size of the coarse mesh, which all ranks know.
     template <int dim>
     double
     size_of_coarse_mesh(const Triangulation<dim> &triangulation)
@@ -254,9 +254,9 @@ namespace Viscoplastic
   void
   AdmissibleSpace<dim>::make_frames()
   {
-    // A node's frame is a function of the conditions that meet there, as long
-    // as each has one normal. As a bit mask in a vector they travel to the
-    // other ranks.
+    // A node's frame is a function of the conditions at the node and, on curved
+    // boundaries, of its normal. Their bit masks are sent to other ranks in a
+    // vector.
     const auto [listed, mask, waits] = conditions_at_nodes(
       dof_handler, scene, hanging_cartesian, mortar_rows, node_position);
 

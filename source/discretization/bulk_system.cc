@@ -17,7 +17,7 @@ namespace Viscoplastic
 
 
 
-    /// What a rank knows of the nodes at its vertices.
+    /// The nodes at the vertices of this rank's owned and ghost cells.
     template <int dim>
     class VertexNodes
     {
@@ -60,15 +60,15 @@ namespace Viscoplastic
                                                               dim);
       }
 
-      /// Whether this rank knows by itself whether the node hangs: all cells
-      /// around it are owned or ghosts.
+      /// Whether all cells around the vertex are owned or ghosts, so that this
+      /// rank knows whether the node hangs.
       bool
       is_known(const unsigned int vertex) const
       {
         return is_at_owned_cell[vertex];
       }
 
-      /// The node at a vertex, or those that it hangs on.
+      /// Return the node at a vertex, or its parents if it hangs.
       Combination
       resolve(const unsigned int vertex) const
       {
@@ -90,14 +90,14 @@ namespace Viscoplastic
 
 
 
-    /// A new node of a refined cell: 0, 1 or 2 halves of the cell in each
-    /// direction away from its first vertex.
+    /// A new node of a refined cell, by its offset from the first vertex: 0, 1
+    /// or 2 half widths in each direction.
     template <int dim>
     struct Midpoint
     {
       std::array<unsigned char, dim> halves;
 
-      /// The weight of a vertex of the cell there.
+      /// Return the value here of the linear shape function of a vertex.
       double
       weight(const unsigned int vertex) const
       {
@@ -111,11 +111,11 @@ namespace Viscoplastic
 
 
 
-    /// A vertex, as the number that it has in a refined cell.
+    /// A vertex, by its number in a refined cell.
     using Question = std::pair<CellId::binary_type, unsigned int>;
 
-    /// What vertices of refined cells are that lie apart from the owned cells
-    /// of this rank: asks a rank that owns a cell at each. Collective.
+    /// Return the nodes at vertices of refined cells that touch no owned cell
+    /// of this rank, as known by a rank that owns a cell there. Collective.
     template <int dim>
     std::vector<Combination>
     ask_others(const std::vector<Question> &questions,
@@ -152,7 +152,7 @@ namespace Viscoplastic
 
 
 
-    /// The refined cell that a node is a new one of.
+    /// The refined cell of which a node is a new one.
     template <int dim>
     struct Origin
     {
@@ -162,8 +162,8 @@ namespace Viscoplastic
 
 
 
-    /// For each owned node, of which those with a level that is not zero hang.
-    /// Sets the levels of the others.
+    /// Return the origin of each owned node, and set the first levels of
+    /// independent nodes; hanging nodes have a nonzero level on entry.
     template <int dim>
     std::vector<Origin<dim>>
     find_origins(const VertexNodes<dim>   &nodes,
@@ -176,7 +176,7 @@ namespace Viscoplastic
           for (unsigned int c = 0; c < cell->n_children(); ++c)
             for (const unsigned int v : cell->vertex_indices())
               {
-                // Vertex v of child c; the cell has it, too, if v is c.
+                // Vertex v of child c is a vertex of the cell itself if v is c.
                 const unsigned int vertex = cell->child(c)->vertex_index(v);
                 if (v == c || !nodes.owns(vertex))
                   continue;
@@ -219,7 +219,7 @@ namespace Viscoplastic
 
     const auto origins = find_origins(nodes, triangulation, hierarchy);
 
-    // Parents that other ranks know.
+    // Parents that only other ranks can resolve.
     std::vector<Question>                questions;
     std::map<unsigned int, unsigned int> question_of_vertex;
     for (const Origin<dim> &origin : origins)

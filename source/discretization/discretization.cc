@@ -44,9 +44,9 @@ namespace Viscoplastic
 
 
 
-    /// About how many steps a mesh stays. In runs to a tolerance there are
-    /// fewer, but they are long: fronts that cross many nodes take twice the
-    /// iterations of those by which costs were measured.
+    /// Return about how many steps a mesh is used. Runs to a tolerance take few
+    /// but long steps: fronts that cross many nodes need twice the iterations
+    /// on which the cost model is based.
     template <int dim>
     unsigned int
     expected_steps(const Scene<dim> &scene)
@@ -59,7 +59,7 @@ namespace Viscoplastic
 
 
 
-    /// Heun's method solves for its predictor, too.
+    /// Return the solves per step: Heun's method also solves for its predictor.
     template <int dim>
     unsigned int
     solves_per_step(const Scene<dim> &scene)
@@ -112,7 +112,7 @@ namespace Viscoplastic
     assemble_elastic_matrix(space, moduli, mean_dilatation, matrix);
     if (springs && space.is_held_by_springs())
       {
-        // What rounding of the matrix resists a rigid motion with.
+        // Rounding of the matrix resists rigid motions; springs must exceed it.
         double sum = 0.;
         for (std::size_t i = 0; i < space.owned.n_elements(); ++i)
           sum += matrix.diagonal(i);

@@ -33,7 +33,7 @@ namespace Viscoplastic
       }
     for (const Stiffness &stiffness : moduli)
       max_nu = std::max(max_nu, stiffness.poissons_ratio());
-    // The same in all stages: what follows from it must not change with them.
+    // max_nu must be the same in all stages, and so must choices based on it.
     if (scene.has_stages())
       for (const auto &cell : space.cells)
         max_nu = std::max(max_nu,
@@ -107,7 +107,7 @@ namespace Viscoplastic
     for (unsigned int i = 0; i < n_all; ++i)
       for (unsigned int j = i + 1; j < n_all; ++j)
         cell_matrix(i, j) = cell_matrix(j, i);
-    // What is no unknown gets a diagonal for solvers to divide by.
+    // Entries that are no unknowns get a positive diagonal for solvers.
     for (unsigned int i = n_all; i < cell_matrix.m(); ++i)
       cell_matrix(i, i) = cell_matrix(n, n);
   }
@@ -130,8 +130,8 @@ namespace Viscoplastic
                             update_values | update_gradients |
                               update_JxW_values | update_quadrature_points);
     const unsigned int n = fe.n_dofs_per_cell() + (space.axial ? dim : 0);
-    // Cells that differ by a translation have one matrix, to the last digit:
-    // rows of nodes between such cells are equal, too.
+    // Cells that differ by a translation have one matrix, to the last digit, so
+    // that rows of nodes between such cells are equal, too.
     std::map<std::pair<unsigned int, const Stiffness *>, FullMatrix<double>>
                                          known;
     FullMatrix<double>                   cell_matrix;

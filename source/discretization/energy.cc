@@ -29,13 +29,13 @@ namespace Viscoplastic
     const unsigned int      n            = stress_space.n_samples;
     const Stiffness        &stiffness    = stress_space.moduli(c);
     const ViscoplasticLaw  *law          = now.law(c);
-    // At most 2^dim samples, without memory from the heap.
+    // There are at most 2^dim samples, which need no heap memory.
     using Samples =
       std::array<SymmetricTensor<2, 3>, GeometryInfo<dim>::vertices_per_cell>;
     FlowEnergies result;
     if (state.z.empty())
       return result;
-    // A source flows also where there is no law.
+    // A source makes flow also in cells without a law.
     const bool flows = law || laws.source_solution;
     const bool is_heated =
       laws.thermal && laws.thermal->expands && laws.thermal->varies_in_time;
@@ -64,13 +64,13 @@ namespace Viscoplastic
         const SymmetricTensor<2, 3> mean_strain =
                                       0.5 * (old_strain[s] + strain[s]),
                                     mean_z = 0.5 * (old_z + z);
-        // E^-1 sigma, of the mean stress of the step.
+        // E^-1 sigma of the mean stress in the step.
         SymmetricTensor<2, 3> driving_strain =
           mean_strain + stiffness.strain(mean_z);
         SymmetricTensor<2, 3> flow = z - old_z;
         if (growth != 0.)
           flow -= ThermalStrain<dim>::stress(stiffness, growth);
-        // Parameters may be expressions: only for laws that use them.
+        // Parameters may be costly expressions: only these laws evaluate them.
         if (law && law->has_own_energy())
           {
             const LawPoint              point = now.point(c, s);
@@ -80,7 +80,7 @@ namespace Viscoplastic
                                                             s),
                                         strain_of_law =
                                           now.mechanical(strain[s], c, s);
-            // Beyond that of the stress.
+            // The stored energy minus that of the stress.
             const auto own_energy = [&](const SymmetricTensor<2, 3> &total,
                                         const SymmetricTensor<2, 3> &z,
                                         const SymmetricTensor<2, 3> &of_law,
@@ -195,8 +195,7 @@ namespace Viscoplastic
   relative_stress_fluctuation(const StressSpace<dim> &stress_space,
                               const State<dim>       &state)
   {
-    // The strain within cells, which a stress_space of cell means does not
-    // keep.
+    // A space of cell means does not contain the strain within cells.
     const StressSpace<dim>             points(stress_space.space,
                                   stress_space.moduli,
                                   /* at_quadrature_points = */ true,

@@ -10,7 +10,7 @@ namespace Viscoplastic
 {
   namespace
   {
-    /// The position of a sample; in 2D, z = 0.
+    /// Return the position of a sample; in 2D, z = 0.
     template <int dim>
     Point<3>
     position(const StressSpace<dim> &stress_space,
@@ -25,8 +25,8 @@ namespace Viscoplastic
 
 
 
-    /// Refuse laws that depend on the total strain where the material is added
-    /// to a body that has strains.
+    /// Refuse laws that depend on the total strain if the material is added to
+    /// a strained body.
     template <int dim>
     void
     check_added_material(const Material<dim> &material,
@@ -207,7 +207,7 @@ namespace Viscoplastic
     , t(t)
     , history(history)
   {
-    // Parameters that are the same everywhere are those of any temperature.
+    // Uniform parameters may take T at any sample.
     const double T =
       thermal && !thermal->temperature.empty() ? thermal->temperature[0] : 0.;
     for (const Entry &entry : laws.materials)
@@ -298,7 +298,7 @@ namespace Viscoplastic
     const auto                now          = laws.at(t, state.history);
     FlowRate                  result{IrreversibleStress(z.size()), 0., 0.};
     result.history_rate.resize(state.history.size());
-    // Not of predictions, which take the rates before.
+    // Predictions, evaluated on the side before t, do not need it.
     const auto &quantity = stress_space.space.scene.quantity;
     if (quantity && !quantity->is_sum() && laws.source_solution == nullptr &&
         side == ExactSolution<dim>::Side::after)
@@ -308,7 +308,7 @@ namespace Viscoplastic
     std::array<LawPoint, GeometryInfo<dim>::vertices_per_cell> points;
     std::array<Flow, GeometryInfo<dim>::vertices_per_cell>     flow;
     LargestPlace<3>                                            worst;
-    // An expression without a value there, on some rank.
+    // An expression may have no value at a point of some rank.
     fail_together(comm, [&] {
       for (std::size_t c = 0; c < stress_space.n_cells(); ++c)
         {
@@ -332,7 +332,7 @@ namespace Viscoplastic
             {
               result.rate[c * n + s] += flow[s].rate;
               const double r = flow[s].relaxation_rate;
-              // A NaN compares as no limit at all.
+              // A NaN would compare as no limit at all.
               if (!(r >= 0.))
                 refuse_rate(r, points[s].x, t);
               if (worst.may_take(r))
@@ -366,8 +366,8 @@ namespace Viscoplastic
 
   namespace
   {
-    /// Newton's step for a law with constant tangents, which is exact; keeps
-    /// the inverse of the last sample, of which most have the same.
+    /// A Newton step for a law with constant tangents, which is exact; caches
+    /// the inverse, which most samples share.
     class LinearEquation
     {
     public:
@@ -420,7 +420,7 @@ namespace Viscoplastic
       const ViscoplasticLaw &law = *laws.law(c);
       const Stiffness       &stiffness = stress_space.moduli(c);
       stress_space.strains(c, ghosted_u.begin(), strain.data());
-      // An inverse for one sample costs more than radial return.
+      // Inverting for a single sample costs more than radial return.
       const bool keeps_inverse =
         law.has_constant_tangents() &&
         !(laws.varies_in_space(c) && stiffness.is_isotropic() &&

@@ -8,8 +8,8 @@ namespace Viscoplastic
 {
   namespace
   {
-    /// Call visit(frame, first component's local position) for each owned node
-    /// with prescribed components.
+    /// Call visit(frame, local index of the first component) for each owned
+    /// node with prescribed components.
     template <int dim, typename Visitor>
     void
     for_each_prescribed(const AdmissibleSpace<dim> &space, const Visitor &visit)
@@ -24,8 +24,8 @@ namespace Viscoplastic
 
 
 
-    /// What the constraints add in the prescribed components of the node whose
-    /// first component is at local position @p first; padded by zeros.
+    /// Return the constraint forces in the prescribed components of the node
+    /// whose first component has the local index @p first; padded by zeros.
     template <int dim>
     Tensor<1, dim>
     constraint_force(const Forces<dim>     &forces,
@@ -120,8 +120,8 @@ namespace Viscoplastic
         result[pair.first]; // the same entries on all ranks
     for (const Support<dim> &support : space.scene.supports)
       result[support.condition.id];
-    // A constraint pushes along the direction that it prescribes. These may be
-    // oblique to each other, and so parts, not projections.
+    // A constraint force acts along the direction that it prescribes. These may
+    // be oblique, so the force is decomposed, not projected.
     for_each_prescribed(
       space, [&](const NodalFrame<dim> &frame, const std::size_t first) {
         const Tensor<1, dim> part = transpose(invert(condition_matrix(frame))) *
@@ -207,7 +207,7 @@ namespace Viscoplastic
         bool is_open                = first < end;
         for (unsigned int o = first; o < end; ++o)
           is_open &= state.multiplier[o][0] == 0.;
-        // Where nothing touches there is neither stick nor slip.
+        // Without contact there is neither stick nor slip.
         if (layout.points[p].is_obstacle || (is_open && state.bound[p] == 0.))
           continue;
         const double size   = stable_norm(slips[p]);
@@ -225,7 +225,7 @@ namespace Viscoplastic
           {
             result.slip_area += weight;
             result.max_slip = std::max(result.max_slip, size);
-            // Below this, the direction is rounding.
+            // The direction of a smaller slip is rounding.
             if (state.bound[p] > 0. && size > 1e-7 * max_displacement)
               result.slip_misalignment =
                 std::max(result.slip_misalignment,

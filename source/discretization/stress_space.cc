@@ -112,7 +112,7 @@ namespace Viscoplastic
   SymmetricTensor<2, 3>
   StressSpace<dim>::mean_strain(const std::size_t cell, const double *u) const
   {
-    // Mean dilatation does not change it.
+    // Mean dilatation does not change the mean strain.
     const std::size_t first = space.shapes[cell] * n_vertices;
     return strain_at(displacements(cell, u),
                      &mean_gradients[first],
@@ -173,7 +173,7 @@ namespace Viscoplastic
         const Tensor<1, dim> *g =
           &gradients[(space.shapes[cell] * n_samples + s) * n_vertices];
         const double weighted = factor * weight(cell, s);
-        // What acts in the plane, in 2D, and around an axis.
+        // The stress in the plane, in 2D, and the hoop stress.
         double acting[dim][dim], around = 0.;
         for (unsigned int i = 0; i < dim; ++i)
           for (unsigned int j = 0; j < dim; ++j)
@@ -216,11 +216,10 @@ namespace Viscoplastic
     constexpr unsigned int n             = n_vertices * dim;
     const bool             mean_pressure = mean_dilatation && n_samples > 1;
     const unsigned int     n_all         = n + (space.axial ? 1 : 0);
-    // Components of tensors as SymmetricTensor<2, 3> stores them; strains in a
-    // plane have the first ones.
+    // Components of SymmetricTensor<2, 3>; plane strains have the first ones.
     constexpr unsigned int n_components    = dim == 2 ? 4 : 6;
     constexpr unsigned int component[3][3] = {{0, 3, 4}, {3, 1, 5}, {4, 5, 2}};
-    // Of the upper triangle.
+    // The upper triangle.
     std::array<std::array<double, n + 1>, n + 1> sums{};
     for (unsigned int s = 0; s < n_samples; ++s)
       {
@@ -232,8 +231,8 @@ namespace Viscoplastic
         const auto            hoop = [&h](const unsigned int i) {
           return h != nullptr && i % dim == 0 ? h[i / dim] : 0.;
         };
-        // A third of what the mean divergence of each shape function is more
-        // than the divergence.
+        // A third of each shape function's mean divergence minus its
+        // divergence.
         std::array<double, n> excess{};
         if (mean_pressure)
           for (unsigned int i = 0; i < n; ++i)
@@ -247,8 +246,8 @@ namespace Viscoplastic
             }
         for (unsigned int j = 0; j < n_all; ++j)
           {
-            // C eps of shape function j, and its work on the others, of whose
-            // strains most is zero.
+            // C eps of shape function j, and its work on the others, most of
+            // whose strain components are zero.
             std::array<double, 6> stress{};
             for (unsigned int i = 0; i < n_components; ++i)
               {
@@ -291,7 +290,7 @@ namespace Viscoplastic
   std::vector<FullMatrix<double>>
   StressSpace<dim>::prolongation() const
   {
-    // The samples belong to the support points of the element, whose shape
+    // Samples are values at the support points of the element, whose shape
     // functions are constant or (bi-, tri-)linear.
     std::vector<FullMatrix<double>> result(
       GeometryInfo<dim>::max_children_per_cell,

@@ -10,7 +10,8 @@ namespace Viscoplastic
 {
   namespace
   {
-    /// The part of @p v in the directions that a piece with this normal holds.
+    /// Return the part of @p v in the directions that @p condition prescribes
+    /// or couples by contact or friction on a face with this normal.
     template <int dim>
     Tensor<1, dim>
     held(const BoundaryCondition<dim> &condition,
@@ -87,12 +88,12 @@ namespace Viscoplastic
             continue;
           const auto                    id = cell->face(f)->boundary_id();
           const BoundaryCondition<dim> &condition = space.scene.boundary.at(id);
-          // Of pairs w is a jump.
+          // On a pair of bodies w is a jump, not a trace.
           if (condition.against)
             continue;
           face_values.reinit(cell, f);
           const Tensor<1, dim> nu = face_values.normal_vector(0);
-          // What w is meant to be on its own pieces.
+          // The value of w that J prescribes on its own boundary.
           Tensor<1, dim>       own;
           const Tensor<1, dim> along = tangential(direction, nu);
           if (quantity.kind == Kind::reaction && id == quantity.number)
@@ -109,15 +110,16 @@ namespace Viscoplastic
               for (unsigned int d = 0; d < dim; ++d)
                 at_node[d] = w(cell->vertex_dof_index(v, d));
               Tensor<1, dim> excess = held(condition, at_node, nu) - own;
-              // What slides is known, see BoundaryDefects; and shear beside a
-              // plane of symmetry is zero.
+              // BoundaryDefects accounts for friction on sliding foundations,
+              // and there is no shear beside a plane of symmetry.
               if (condition.has_friction() && condition.foundation_motion)
                 excess -= tangential(excess, nu);
               for (const auto &[plane, nodes] : planes)
                 if (plane->id != id &&
                     nodes.is_element(cell->vertex_dof_index(v, 0)))
                   excess -= (excess * plane->normal) * plane->normal;
-              // Normals of curved pieces are not those of their faces.
+              // The tolerance is large since nodal normals of curved boundaries
+              // differ from those of faces.
               if (excess.norm() < 0.1 ||
                   face_values.shape_value(v * dim, 0) < 1e-10)
                 continue;
@@ -295,8 +297,7 @@ namespace Viscoplastic
       Point<dim>::unit_vector(quantity.component);
     DistributedVector w = space.owned_vector();
     if (quantity.kind == QuantityOfInterest::Kind::reaction)
-      // What reactions() makes of the forces at prescribed components,
-      // transposed.
+      // The transpose of what reactions() does with nodal forces.
       for (const auto &node : space.boundary_nodes())
         {
           const NodalFrame<dim> &frame = space.frame(node.frame);
@@ -322,7 +323,7 @@ namespace Viscoplastic
          is_contact_force) &&
         face != nullptr)
       {
-        // Against another body, of the jump: not what a translation has there.
+        // Against another body, w is the jump in this direction.
         DistributedVector at_boundary = space.owned_vector();
         for (const auto &node : space.boundary_nodes())
           {
@@ -334,8 +335,8 @@ namespace Viscoplastic
               at_boundary.begin()[first + d] = in_frame[d];
           }
         Vector<double> on_face = face->restriction().gather(at_boundary);
-        // Along obstacles there is no friction, and contact only there. Of one
-        // boundary, a force is no more than its part of that at its nodes.
+        // Friction has no component along obstacle normals, and contact has no
+        // other. For one boundary, J takes its share of the force at each node.
         const ContactLayout &layout = face->layout();
         const auto           share  = [&](const unsigned int p) {
           return quantity.number == QuantityOfInterest::all ?
@@ -357,7 +358,7 @@ namespace Viscoplastic
             for (unsigned int p = first_obstacle; p < layout.first_point[n + 1];
                  ++p)
               contact += share(p) * take(layout.points[p].map[0]);
-            // Of several points at an edge, each along its own directions.
+            // At an edge, each of several points acts along its directions.
             for (unsigned int p = first; p + 1 < first_obstacle; ++p)
               for (unsigned int i = 0; i < layout.points[p].n_tangents; ++i)
                 friction += share(p) * take(layout.points[p].map[i]);

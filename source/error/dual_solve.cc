@@ -9,16 +9,16 @@ namespace Viscoplastic
 {
   namespace
   {
-    /// Of the dual solution in the energy norm. An estimate needs no more than
-    /// 1e-3, but meshes are refined by it, which are to be those of other
-    /// ranks.
+    /// The relative tolerance of the dual solution in the energy norm. The
+    /// estimate needs no more than 1e-3, but refinement marks depend on it and
+    /// must not vary with the number of ranks.
     constexpr double dual_tolerance = 1e-6;
-    /// A spring that many times as stiff as its node holds it as well as an
-    /// estimate needs. In short steps rho/|s| is beyond all measure, and the
-    /// preconditioner is not made anew for it.
+    /// The largest ratio of a spring to its node's stiffness. It approximates a
+    /// rigid constraint well enough; rho/|s| is unbounded in short steps, and
+    /// the preconditioner is not rebuilt for it.
     constexpr double stiffest_spring = 1e3;
-    /// The tolerance is relative to where a solve begins, which may have this
-    /// times the energy norm of the solution before corrections are corrected.
+    /// The tolerance is relative to the initial error, which may be this times
+    /// the energy norm of the solution before another correction follows.
     constexpr double enough = 30.;
   } // namespace
 
@@ -34,7 +34,7 @@ namespace Viscoplastic
     const ContactLayout &face   = discretization.face->layout();
     ContactState         linear = contact;
     for (unsigned int p = 0; p < linear.n_points(); ++p)
-      // Nothing holds a point without friction, or off the foundation.
+      // A point without friction bound, or without contact pressure, is free.
       linear.sticks[p] = linear.sticks[p] && (face.points[p].is_obstacle ?
                                                 linear.multiplier[p][0] > 0. :
                                                 linear.bound[p] > 0.);
@@ -74,12 +74,12 @@ namespace Viscoplastic
          result.truncation.equals(dual.truncation, face->layout())))
       return false;
     result.w = prescribed();
-    // The norm of w counts in full where bounds are those of the step before.
+    // With bounds of the step before, the estimate uses the norm of w alone.
     if (quantity.is_sum() && law != nullptr &&
         !discretization.scene().has_bounds_of_step_before())
       prescribe_work_of_pressure(contact, *law, slip_steps, result.w);
     const DistributedVector load = right_side(contact);
-    // The sizes of the step that has been solved are not those of w.
+    // Residuals are scaled by w, not by the step that has been solved.
     Forces<dim> forces;
     forces.u           = result.w;
     forces.load.values = load;
@@ -91,8 +91,8 @@ namespace Viscoplastic
       solver.solve(load, result.w, dual_tolerance, scale);
     else if (!is_zero)
       {
-        // What a few corrections leave is beyond the digits of where they
-        // begin, and asked for below.
+        // A few corrections leave at most rounding of the initial values;
+        // complete() recognizes a w that is no more than that.
         solve_truncated(*solver.begin(load, result.w, scale),
                         face->layout(),
                         result.truncation,
@@ -124,7 +124,7 @@ namespace Viscoplastic
         solver.solve(load, u, dual_tolerance);
         return;
       }
-    // What touches the foundation is not off it, whatever it was before.
+    // Points in contact have no normal error, whatever their state was before.
     const ContactLayout &layout   = face->layout();
     ContactState         touching = contact;
     for (unsigned int p = 0; p < touching.n_points(); ++p)
@@ -177,8 +177,8 @@ namespace Viscoplastic
     DistributedVector elastic = space.owned_vector();
     matrix.vmult(elastic, dual.w);
     dual.norm = std::sqrt(std::max(0., dual.w * elastic));
-    // A force that statics fixes, or the bounds of friction, feels no residual:
-    // w is a rigid motion or zero, but for rounding.
+    // A force that statics or friction bounds determine depends on no residual:
+    // w is a rigid motion or zero, up to rounding.
     Forces<dim> forces;
     forces.u = prescribed();
     forces.u += dual.w;
@@ -188,7 +188,7 @@ namespace Viscoplastic
       dual.norm = 0.;
     dual.cartesian = space.ghosted_vector();
     space.to_cartesian(dual.w, dual.cartesian);
-    // The load of a point does not hold w, that of friction does.
+    // The point load is no constraint force of w; the load of friction is.
     DistributedVector force = point_load;
     force -= elastic;
     if (d.face)

@@ -5,9 +5,10 @@ namespace Viscoplastic
 {
   namespace
   {
-    /// k dG/deps E^-1 of linear laws that depend on the strain. Where the
-    /// strains make up for an error of z, which makes no stress, a step leaves
-    /// (1 + k dG/deps E^-1)^-1 of it. None of others, whose strain stays.
+    /// Return k dG/deps E^-1 of linear laws that depend on the strain. If
+    /// strains compensate an error of z, so that it makes no stress, a step
+    /// leaves (1 + k dG/deps E^-1)^-1 of it. Return nothing for other laws,
+    /// where such an error persists.
     std::optional<SymmetricTensor<4, 3>>
     growth_with_strain(const ViscoplasticLaw &law,
                        const double           k,
@@ -31,7 +32,7 @@ namespace Viscoplastic
     const Stiffness       *last_stiffness = stiffness;
     law                                   = now.law(c);
     stiffness                             = &stress_space.moduli(c);
-    // The same in all cells of most bodies.
+    // In most bodies these are the same in all cells.
     if (c > 0 && law == last_law && stiffness == last_stiffness &&
         !(law && now.varies_in_space(c)))
       return;
@@ -83,8 +84,8 @@ namespace Viscoplastic
     State<dim>             &state = end.state;
     const StressSpace<dim> &space = laws.stress_space;
     const Scene<dim>       &scene = space.space.scene;
-    // A force remembers; steps are chosen by the first sum, and the others are
-    // for points that come to rest.
+    // The sums are for forces, whose errors persist: the first one for the
+    // choice of steps, the others for points that come to rest.
     const bool is_force = scene.quantity->is_force(),
                chooses =
                  is_force && scene.parameters.error_control.has_tolerance(),
@@ -94,7 +95,7 @@ namespace Viscoplastic
       errors(space.n_samples);
     SymmetricTensor<2, 3> stress, strain;
     LawPoint              point;
-    // Of what the step adds, of D, of what is kept and regained of that.
+    // Squared norms: of the increment, of D, of its kept and regained parts.
     std::vector<double> sums(4, 0.);
     std::size_t         i = 0;
     for (std::size_t c = 0; c < space.n_cells(); ++c)
@@ -135,8 +136,8 @@ namespace Viscoplastic
                 if (decay.growth)
                   add_square(3, relaxation * (*decay.growth * moves));
               }
-            // The stress of the error relaxes as if the strain stayed, and what
-            // strains then make up for fades as if the stress did.
+            // Split the step: the error's stress relaxes at fixed strain, then
+            // what strains compensate fades at fixed stress.
             const SymmetricTensor<2, 3> elastic = stiffness.stress(errors[s]),
                                         left = relaxation * (error + elastic);
             error                            = left - elastic;

@@ -19,8 +19,8 @@ namespace Viscoplastic
   TimeDefect
   time_defect(const TimeScheme scheme)
   {
-    // Of Heun's that of the trapezoidal rule; add_defect() knows what it has
-    // integrated instead of that.
+    // For Heun's method, the defect of the trapezoidal rule; add_defect() adds
+    // the difference between that rule and the method.
     return scheme == TimeScheme::forward_euler  ? TimeDefect{0.5, 0.} :
            scheme == TimeScheme::backward_euler ? TimeDefect{-0.5, 0.} :
                                                   TimeDefect{0., -1. / 12.};
@@ -166,8 +166,8 @@ namespace Viscoplastic
       {
         Assert(accepted_rate != nullptr && end.rate,
                ExcMessage("The rates have not been evaluated."));
-        // Where slip has begun G has grown until then only, which is after
-        // the part of the step that its slip has missed.
+        // G has grown only before slip began, the part of the step without
+        // slip.
         const double onset =
           slip_defects != nullptr ?
             0.5 *
@@ -213,7 +213,7 @@ namespace Viscoplastic
     estimate.velocity_square = products[0] / (k * k);
     const double jump =
       estimate.velocity_square - 2. / k * products[1] + before.velocity_square;
-    // Below this it is rounding.
+    // A smaller jump is rounding.
     const bool is_jump =
       jump > 1e-12 * (estimate.velocity_square + before.velocity_square);
     estimate.velocity_variation =

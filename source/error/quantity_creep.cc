@@ -1,20 +1,20 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <viscoplastic_contact/error/quantity_estimator.h>
 
-// What creep makes of a quantity's error: products with the dual solution of a
-// step as long as what has crept.
+// The error of a quantity by creep: products with the dual solution of one step
+// as long as the creep time.
 
 namespace Viscoplastic
 {
   namespace
   {
-    /// Tangents of creep serve until the compliance E^-1 + T dG/dsigma of today
-    /// would differ by this, as a mean over the body.
+    /// Tangents of creep are kept until the present compliance E^-1 + T
+    /// dG/dsigma would differ by this, relatively and averaged over the body.
     constexpr double largest_change = 0.1;
 
 
 
-    /// int |G' - G| and int |G|, of the rates @p from, G, and @p to.
+    /// Return int |G' - G| and int |G| of the rates G = @p from and G' = @p to.
     /// Collective.
     template <int dim>
     std::array<double, 2>
@@ -84,14 +84,14 @@ namespace Viscoplastic
     const State<dim>       &state        = end.state;
     const FlowRate         &rate         = *end.rate;
     const StressSpace<dim> &stress_space = discretization.stress_space;
-    // After a thousand relaxation times the body is as good as incompressible.
-    // To half a power of two, so that linear laws have few matrices.
+    // After a thousand relaxation times the body is practically incompressible.
+    // k is a power of sqrt(2), so that linear laws need few matrices.
     const double longest = 1e3 / rate.relaxation_rate,
                  time    = std::min(creep.time, std::max(state.t, longest)),
                  k       = std::exp2(
                    0.5 * std::floor(2. * std::log2(std::min(time, longest))));
     const auto now = discretization.laws.at(state.t, state.history);
-    // What they miss of tangents of today is in the remainder.
+    // The remainder contains the difference to tangents at the present state.
     const auto has_changed = [&] {
       const auto [difference, size] =
         change(stress_space, linearized->rate_slope, rate.rate);
@@ -155,7 +155,7 @@ namespace Viscoplastic
                                          linearization,
                                          dual_of_creep.recovered);
     sides = boundary_defects.missing_sides(state, dual.cartesian);
-    // The longer step moves the body more by the same force.
+    // The same force moves the body more in the longer step.
     if (discretization.scene().quantity->is_force())
       products *= linearization.share;
     else if (sides.size() > 0)

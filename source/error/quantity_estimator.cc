@@ -151,7 +151,7 @@ namespace Viscoplastic
         Vector<double> indicators(products);
         const auto     of_products = sum_over_cells(products, triangulation);
         auto           sums        = of_products;
-        // Forces forget what has crept, but nothing is known of the signs then.
+        // Forces relax in creep, but the signs of the rest are unknown.
         if (quantity.is_force() && errors.energy_norm > 0.)
           estimate.space_at_least =
             std::min(1., errors.creep_path / errors.energy_norm) * safety *
@@ -160,7 +160,7 @@ namespace Viscoplastic
                                 end.rate->relaxation_rate * errors.creep_time :
                                 0.;
         const bool   creeps = crept > elastic;
-        // Residuals do not know what mean dilatation leaves out of pressures.
+        // Residuals lack the pressures that mean dilatation leaves out.
         if (creeps || (d.mean_dilatation && dual.norm > 0.))
           {
             if (creeps)
@@ -190,7 +190,7 @@ namespace Viscoplastic
         if (end.space_estimate.squared_indicators.size() > 0)
           end.space_estimate.squared_indicators = std::move(indicators);
       }
-    // As those of cells, their signs may cancel by chance.
+    // The signs of sides may cancel by chance, too.
     const auto [of_sides, size_of_sides] = sum_over_cells(sides, triangulation);
     estimate.of_sides                    = dual_problem.sign() * of_sides;
     estimate.space_at_least =
@@ -238,8 +238,8 @@ namespace Viscoplastic
     if (old.carried_error_of_u.size() > 0)
       {
         space.to_frames(old.carried_error_of_u, u);
-        // Points come to rest where the error of z that has relaxed since has
-        // moved them.
+        // Points that come to rest keep the error of u at their last slip: with
+        // the error of z as relaxed since, and the former sets.
         bool rests = false;
         if (discretization.slipping_face())
           for (unsigned int p = 0; p < state.contact.n_points(); ++p)
@@ -323,8 +323,7 @@ namespace Viscoplastic
     if (is_sum)
       {
         estimate.value += before.value;
-        // Where nothing slips for a while, what the body will remember is
-        // judged by the last slip.
+        // While nothing slips, the dual solution of the last slip is used.
         estimate.dual_norm  = before.dual_norm;
         estimate.dual_error = before.dual_error;
         settle(accepted, state.contact, estimate);
@@ -340,14 +339,14 @@ namespace Viscoplastic
       hold(solver, accepted, state.contact, linearized, end.errors);
     renew(solver, d.matrix, end, linearized, dual_of_step);
     const DualSolution<dim> &dual = dual_of_step.solution;
-    // |J| <= a(w, w)^{1/2} a(u, u)^{1/2}; of a force that statics fixes w is a
-    // rigid motion.
+    // |J| <= a(w, w)^{1/2} a(u, u)^{1/2}; for a force that statics determines w
+    // is a rigid motion, and the bound zero.
     if (!is_sum &&
         std::abs(estimate.value) <
           nothing * std::max(dual.norm * errors.energy_norm,
                              dual_problem.size_of_parts(state, end.forces)))
       estimate.value = 0.;
-    // A state that has hardly changed has the errors of the one before, in
+    // A state that has hardly changed keeps the estimate of the one before, in
     // proportion.
     double mesh = 0., time = 0.;
     if (growth)
@@ -366,7 +365,7 @@ namespace Viscoplastic
       time = time_error(state);
     estimate.space_correction = estimate.settled_space + mesh;
     estimate.time_correction  = estimate.settled_time + time;
-    // Signs that happen to cancel at one time do not at others.
+    // A cancellation of settled and present errors at one time is not trusted.
     const auto size_with = [&](const double settled, const double now) {
       return std::max(std::abs(settled + now), is_sum ? 0. : std::abs(now));
     };
@@ -376,21 +375,22 @@ namespace Viscoplastic
                 is_sum ? 0. : with_safety(mesh, estimate.of_sides),
                 estimate.space_at_least}) +
       estimate.of_boundary;
-    // A part of all forces changes forces by that part, also where the dual
-    // solution is zero, as where all points slip.
+    // A relative change of all forces changes J by the same share, even if the
+    // dual solution is zero because all points slip.
     const auto of_swing = [&](const double energy_norm, const double share) {
       return std::max(energy_norm * estimate.dual_norm,
                       share * std::abs(estimate.value));
     };
     estimate.time = size_with(estimate.settled_time, time) +
                     of_swing(errors.swing, errors.swing_share);
-    // What the step has added to slip that turns, or comes to rest.
+    // The bound in the energy norm, and its increment in the step.
     const double bound = errors.friction * estimate.dual_norm,
                  added = (errors.friction - accepted.errors.friction) *
                          estimate.dual_norm;
     estimate.friction           = bound;
     estimate.friction_indicator = added;
-    // Turns hardly change the pressures that past slip is multiplied by.
+    // For the work of friction under computed pressures: turns hardly change
+    // the pressures that multiply past slip.
     if ((!is_sum || linearized != nullptr) &&
         !d.scene().has_bounds_of_step_before())
       {
@@ -399,7 +399,7 @@ namespace Viscoplastic
         if (slip_defects != nullptr && slip_defects->work > 0.)
           add_slip_defects(
             solver, *slip_defects, state.contact, linearized, dual, estimate);
-        // What points that are off do to a force relaxes as stress does.
+        // The error of a force by displaced points relaxes as stress does.
         const double left =
           quantity.is_force() && errors.remembered_gain == 0. ?
             errors.remembered_share :
@@ -415,19 +415,20 @@ namespace Viscoplastic
     estimate.friction_indicator +=
       of_swing(errors.swing, errors.swing_share) -
       of_swing(accepted.errors.swing, accepted.errors.swing_share);
-    // Of refined cells it would be a product of errors that is not known.
+    // With history at points, the history error stems from refined cells, and
+    // its product with that of w is unknown.
     if (!d.scene().keeps_history_at_points())
       estimate.history = errors.history * estimate.dual_error;
     else if (!d.mean_dilatation && tangent && !is_sum &&
              errors.energy_norm > 0.)
-      // A body that locks is too stiff as a whole, and so is its dual one.
+      // A locking body is too stiff as a whole, and so is its dual solution.
       estimate.history =
         errors.history / errors.energy_norm * std::abs(estimate.value);
     estimate.transfer  = errors.transfer * estimate.dual_error;
     estimate.algebraic = errors.algebraic * estimate.dual_norm;
     estimate.initial   = errors.initial * estimate.dual_error;
     if (is_sum)
-      // Nor are signs known of what has been settled in creep.
+      // These parts have no known signs: their largest values count.
       for (const auto part : {&ErrorParts::space,
                               &ErrorParts::history,
                               &ErrorParts::friction,

@@ -2,8 +2,8 @@
 #include <viscoplastic_contact/error/kelly_estimator.h>
 #include <viscoplastic_contact/error/quantity_estimator.h>
 
-// What slip has settled of a quantity's error: where points come to rest, turn
-// or go on under other bounds.
+// The parts of a quantity's error settled by slip: at points that come to rest,
+// turn or continue under other bounds.
 
 namespace Viscoplastic
 {
@@ -14,8 +14,8 @@ namespace Viscoplastic
                                  QuantityEstimate          &estimate) const
   {
     const ContactState &old = accepted.state.contact;
-    // Bounds of what has slipped, by how much they are less for what goes on
-    // slipping, and the quadrature.
+    // Bounds of points that have slipped, their decrease for points that
+    // continue to slip, and the quadrature error.
     std::vector<double> sums(3, 0.);
     for (unsigned int p = 0; p < contact.n_points(); ++p)
       {
@@ -90,7 +90,7 @@ namespace Viscoplastic
                         ArrayView<double>(sums));
     const double share = sums[0] > 0. ? sums[1] / sums[0] : 0.;
     double       space = 0.; // of what comes to rest
-    // Where the run begins points are where they are by definition.
+    // A run begins with exact positions of points by definition.
     const bool settles =
       accepted.state.k > 0. && discretization.face->layout().any(has_rest);
     if (settles)

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <viscoplastic_contact/error/recovery_estimator.h>
 
-// The errors at singular points that recovery by means around nodes misses.
+// Errors at singular points that recovery by nodal means misses.
 
 namespace Viscoplastic
 {
@@ -55,8 +55,8 @@ namespace Viscoplastic
     sums.update_ghost_values();
 
     // A vertex is singular if, in the adjacent cell of the largest energy
-    // density, strains grow most toward this vertex, and not as in bending or
-    // around holes, see is_curved().
+    // density, strains grow most toward this vertex, and is_curved(): bending
+    // and holes are not singular.
     maxima = 0.;
     for (const unsigned int c : part.cells)
       {

@@ -34,7 +34,7 @@ namespace Viscoplastic
       return values.get_partitioner()->global_to_local(dof / dim * n);
     };
 
-    // Those of all ranks, which exchange sums at nodes together.
+    // The parts of all ranks, which exchange nodal sums together.
     std::map<types::material_id, unsigned int> part_of;
     bool                                       is_mirrored = true;
     for (const auto &cell :
@@ -67,8 +67,8 @@ namespace Viscoplastic
       {
         Part &part = parts[p];
         // Strains grow at most like r^(-n/(n+1)) with the exponent n of a power
-        // law (Hutchinson, Rice and Rosengren, 1968), with 9 for all that are
-        // not linear.
+        // law (Hutchinson, Rice and Rosengren, 1968); n = 9 is assumed for all
+        // nonlinear laws.
         const auto  &law      = space.scene.material(id).law;
         const double exponent = law && !law->has_constant_tangents() ? 9. : 1.;
         part.largest_share    = std::exp2(-2. / (exponent + 1.));
@@ -81,7 +81,7 @@ namespace Viscoplastic
           }
       }
 
-    // Of the section: rings of cells of one size differ in volume.
+    // In the section: volumes of rings vary for cells of one size.
     for (const Cell &cell : local.cells)
       {
         const auto    &shape  = local.shapes[cell.shape];
@@ -133,7 +133,7 @@ namespace Viscoplastic
         for (auto *weights :
              {&parts[p].inverse_weight, &parts[p].inverse_inner_weight})
           {
-            // The sums of all ranks.
+            // Add the sums of all ranks.
             values = 0.;
             for (std::size_t i = 0; i < n_nodes; ++i)
               values.local_element(i * n) = (*weights)[i];
@@ -174,7 +174,7 @@ namespace Viscoplastic
   void
   RecoveryEstimator<dim>::find_across()
   {
-    // All cells around a vertex of an owned cell are here.
+    // Owned and ghost cells include all cells around a vertex of an owned cell.
     const std::size_t n_nodes =
       local.stress_space.space.relevant.n_elements() / dim;
     std::vector<unsigned int> begin(n_nodes + 2, 0),
@@ -320,7 +320,8 @@ namespace Viscoplastic
       {
         if (ends[c].empty())
           continue;
-        // Half of the nodes make all of what the mean misses, if it is linear.
+        // Half of the nodes, corrected twofold, restore the mean of a linear
+        // strain.
         SymmetricTensor<2, 3> missed = means[c];
         for (const unsigned int node : nodes[c])
           for (unsigned int i = 0; i < components.size(); ++i)
@@ -467,7 +468,7 @@ namespace Viscoplastic
                   weights[q] * cell.stiffness.smallest_deviatoric_eigenvalue() *
                   (deviator(e[q]) * deviator(e[q]));
           }
-        // What linear laws have at corners is recovered well enough.
+        // Corner singularities of linear laws are recovered well enough.
         if (part.largest_share > 0.5)
           raise_at_singular_points(part, means, squares);
       }

@@ -126,8 +126,8 @@ namespace Viscoplastic
                   e[q] += swelling(c, z[c * n_samples + s]);
                 const std::size_t i       = c * n_points + q;
                 double            product = e[q] * dual.stress[i];
-                // The part in a step: the share of the deviator, but all of the
-                // volumetric part, since creep changes no volumes.
+                // The part of the error in the step: the share of the deviator,
+                // but all of the volumetric part, since creep preserves volume.
                 const SymmetricTensor<2, 3> of_step =
                   e[q] - (1. - law.share) * deviator(e[q]);
                 if (dilates)

@@ -8,8 +8,8 @@ namespace Viscoplastic
 {
   namespace
   {
-    /// What the data contradict in @p traction = sigma nu: zero in the
-    /// directions in which u is prescribed.
+    /// Return the residual of @p traction = sigma nu, zero in the directions in
+    /// which u is prescribed.
     template <int dim>
     Tensor<1, dim>
     contradiction(const BoundaryCondition<dim> &condition,
@@ -242,7 +242,7 @@ namespace Viscoplastic
         Tensor<1, dim> density, given;
         if (has_multipliers)
           density = at_point(fields.multiplier_density->begin());
-        // Where pieces meet, the field has the pressure of all of them.
+        // Where boundaries meet, the field has the pressures of all of them.
         if (opens && !condition.has_friction() && !condition.against)
           density = (density * condition.normal) * condition.normal;
         const Tensor<1, dim> &normal =
@@ -253,8 +253,8 @@ namespace Viscoplastic
               varies ?
                 condition.load(face.positions[q], shape.normals[q], *fields.t) :
                 face.data[q];
-            // Nodal multipliers respect nodal bounds; between nodes the
-            // density exceeds a bound that jumps.
+            // Nodal multipliers respect nodal bounds; between nodes the density
+            // may exceed a bound that jumps.
             if (has_bound)
               result[n_face_points + q][0] =
                 std::max(0.,
@@ -342,7 +342,7 @@ namespace Viscoplastic
         for (unsigned int q = 0; q < n_face_points; ++q)
           jumps[q] = tractions[face.tractions[0] + q] +
                      tractions[face.tractions[1] + face.partner[q]];
-        // Beside an absent material the whole jump is that of a free face.
+        // Beside an absent material the jump is the residual of a free face.
         const bool is_free =
           !cells[face.cells[0]].is_present || !cells[face.cells[1]].is_present;
         for (const unsigned int cell : face.cells)

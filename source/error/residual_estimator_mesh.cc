@@ -16,8 +16,7 @@
 #include <algorithm>
 #include <cmath>
 
-// What ResidualEstimator keeps of a mesh; how it uses that is in
-// residual_estimator.cc.
+// The mesh data of ResidualEstimator; residual_estimator.cc uses them.
 
 namespace Viscoplastic
 {
@@ -46,7 +45,7 @@ namespace Viscoplastic
 
   namespace
   {
-    /// The first of some places nearest to @p x.
+    /// Return the first of the @p places nearest to @p x.
     template <std::size_t n, typename Place>
     unsigned int
     nearest(const std::array<Place, n> &places, const Place &x)
@@ -295,8 +294,8 @@ namespace Viscoplastic
                   face->diameter /
                     cells[face->cell]
                       .stiffness.smallest_deviatoric_eigenvalue()};
-              // Nodes beyond the edge of the other body do not touch it, and
-              // this rank need not know what lies opposite beside them.
+              // Nodes beyond the edge of the other body have no mortar row, so
+              // that this rank need not know the nodes opposite beside them.
               if (std::all_of(there->nodes.begin(),
                               there->nodes.end(),
                               [&space](const auto &other) {
@@ -331,13 +330,13 @@ namespace Viscoplastic
           continue;
         const auto &cell    = space.cells[face.cell];
         const auto  on_mesh = cell->face(face.face);
-        // A mesh that knows no more than its vertices is the geometry.
+        // A mesh without a curved manifold is the geometry.
         if (dynamic_cast<const FlatManifold<dim> *>(&on_mesh->get_manifold()) !=
             nullptr)
           continue;
         const SurfaceFace<dim> surface =
           space.surface_normals->face(cell, face.face);
-        // Hanging nodes are on the chord; the face beside them counts.
+        // Hanging nodes are on the chord; the coarser face beside them counts.
         if (std::any_of(surface.lifts.begin(),
                         surface.lifts.end(),
                         [](const auto &lift) { return lift.norm() > 0.; }))
@@ -346,7 +345,7 @@ namespace Viscoplastic
           std::abs((on_mesh->center(/* respect_manifold = */ true) -
                     surface.position(middle) - surface.bulge(middle)) *
                    surface.normal(middle));
-        // Rounding of the coordinates.
+        // A smaller offset is rounding of the coordinates.
         if (face.offset < 1e-12 * face.diameter)
           face.offset = 0.;
         largest_offset = std::max(largest_offset, face.offset);
@@ -378,7 +377,7 @@ namespace Viscoplastic
   void
   ResidualEstimator<dim>::make_initial_stress()
   {
-    // Beside an initial displacement z is something else.
+    // With an initial displacement, z differs from the initial stress.
     const Scene<dim> &scene = stress_space.space.scene;
     if (!scene.initial_stress || scene.initial_displacement)
       return;
@@ -481,7 +480,7 @@ namespace Viscoplastic
     if (T.depends_on_time() || !temperatures)
       {
         temperatures.emplace();
-        // A temperature without a value there, on some rank.
+        // The temperature may have no value at a point of some rank.
         fail_together(stress_space.space.communicator, [&] {
           for (const ThermalPoint &point : thermal_points)
             temperatures->push_back(T.value(point.x, t));

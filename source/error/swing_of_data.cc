@@ -5,9 +5,9 @@ namespace Viscoplastic
 {
   namespace
   {
-    /// How far a vector of @p n components is from the ball that has two others
-    /// as the ends of a diameter: from the range of two numbers, and for
-    /// vectors the same in all frames.
+    /// Return the distance of a vector of @p n components from the ball whose
+    /// diameter connects @p a and @p b: for numbers their range, for vectors
+    /// the same in all frames.
     double
     beyond(const double      *value,
            const double      *a,
@@ -66,8 +66,8 @@ namespace Viscoplastic
 
 
 
-    /// Call @p add for each node, of dim numbers of @p n, with how far @p value
-    /// is beyond() the others there, and with its square.
+    /// Call @p add for each node, of dim consecutive values of @p n, with the
+    /// distance of beyond() and the square of @p value.
     template <int dim, typename Add>
     void
     for_each_node(const std::size_t n,
@@ -87,7 +87,7 @@ namespace Viscoplastic
 
 
 
-    /// (int E^-1 sigma : sigma)^{1/2}.
+    /// Return (int E^-1 sigma : sigma)^{1/2}. Collective.
     template <int dim>
     double
     stress_norm(const StressSpace<dim> &stress_space, const State<dim> &state)
@@ -114,7 +114,7 @@ namespace Viscoplastic
     }
 
 
-    /// The data that depend on time, of which a scene remembers something.
+    /// The time-dependent data of a step that affect later states.
     template <int dim>
     class DataInStep
     {
@@ -153,18 +153,18 @@ namespace Viscoplastic
 
       const bool slips, remembers, loads_vary, bounds_vary, moves, slides;
 
-      /// How far data are from all that is between their values at the ends.
+      /// The distances of data from the range of their values at the ends.
       struct Deviation
       {
-        /// Squares: of loads and friction bounds, and of the forces themselves.
+        /// Squared: of loads and friction bounds, and the loads themselves.
         double loads, forces;
-        /// The work of friction in what foundations move by.
+        /// The work of friction in the deviation of foundations.
         double work;
-        /// Of displacements, gaps and foundations; not collective.
+        /// Of displacements, gaps and foundations; maximum on this rank.
         double motion = 0.;
       };
 
-      /// Collective.
+      /// Return the deviations at a time. Collective.
       Deviation
       at(const double time) const
       {
@@ -190,7 +190,7 @@ namespace Viscoplastic
               {
                 const double of_point =
                   beyond(&now[p], &bounds_before[p], &bounds_after[p], 1);
-                // Of an obstacle it is a gap.
+                // The bound of an obstacle is its gap.
                 if (d.face->layout().points[p].is_obstacle)
                   motion = std::max(motion, of_point);
                 else
@@ -240,7 +240,7 @@ namespace Viscoplastic
         return bounds;
       }
 
-      /// At the nodes that have prescribed components, dim numbers each.
+      /// Return the prescribed values at constrained nodes, dim numbers each.
       std::vector<double>
       prescribed_at(const double time) const
       {
@@ -302,8 +302,8 @@ namespace Viscoplastic
         1. :
         std::min(1., end.state.k * end.rate->relaxation_rate);
     Swing swing;
-    // Below this it is rounding. A bound without any force rubs nothing; what
-    // foundations move of the body is counted below.
+    // A smaller deviation is rounding. A friction bound without any force does
+    // no work; motions of foundations are counted below.
     if (forces > 0. && loads > 1e-20 * forces)
       {
         swing.share = remembered * std::sqrt(loads / forces);
@@ -314,8 +314,8 @@ namespace Viscoplastic
       std::max(accepted.forces.u.linfty_norm(), end.forces.u.linfty_norm());
     if (motion > 1e-10 * size)
       {
-        // As stiff as the body is against its own displacement; and friction
-        // takes at most its work, rho on the way there and back.
+        // The energy norm scales with the displacement; friction makes at most
+        // the error of its work, rho times the way there and back.
         const double of_friction = std::sqrt(2. * work);
         double       share = 1., energy_norm = of_friction;
         if (size > 0.)

@@ -4,15 +4,14 @@
 
 #include <limits>
 
-// What time steps leave out of z and of history variables, added up.
+// Sums of the defects of time steps in z and in history variables.
 
 namespace Viscoplastic
 {
   namespace
   {
-    /// How much loads change in a step, relative to those at its end. Friction
-    /// bounds that are given count as loads, and change without limit.
-    /// Collective.
+    /// Return the change of the loads in a step, relative to those at its end;
+    /// infinity if given friction bounds or temperatures change. Collective.
     template <int dim>
     double
     change_of_loads(const FlowLaws<dim>       &laws,
@@ -22,7 +21,6 @@ namespace Viscoplastic
       for (const auto &[id, condition] : laws.stress_space.space.scene.boundary)
         if (condition.friction_depends_on_time())
           return std::numeric_limits<double>::infinity();
-      // So does a temperature.
       if (laws.thermal && laws.thermal->changes(old.state.t, end.state.t))
         return std::numeric_limits<double>::infinity();
       DistributedVector change = end.forces.load.values;
@@ -33,9 +31,9 @@ namespace Viscoplastic
 
 
 
-    /// What becomes of an error of the history variables of @p point in a step
-    /// of backward Euler to this stress, and what it adds to z meanwhile: the
-    /// difference of two steps.
+    /// An error of the history variables after a step of backward Euler to a
+    /// given stress, and its contribution to z in the step: differences of two
+    /// steps.
     struct CarriedError
     {
       SymmetricTensor<2, 3> history, z;
@@ -67,7 +65,7 @@ namespace Viscoplastic
 
 
 
-    /// G half-way through a step of which stress and strain are linear.
+    /// Return G in the middle of a step in which stress and strain are linear.
     template <int dim>
     IrreversibleStress
     rate_half_way(const FlowLaws<dim> &laws,
@@ -78,7 +76,7 @@ namespace Viscoplastic
       middle.u       = end.u;
       middle.z       = end.z;
       middle.history = end.history;
-      // Local values, those of ghosts included.
+      // All local values, including ghosts.
       const std::size_t n_values =
         laws.stress_space.space.relevant.n_elements();
       for (std::size_t i = 0; i < n_values; ++i)
@@ -91,9 +89,9 @@ namespace Viscoplastic
     }
 
 
-    /// What is true of the defect k (G_n - G_{n-1})/2 of a step of backward
-    /// Euler in which G decays exponentially, by its relaxation 1/(1 + x): to
-    /// 15 %, the exact part is 2 (1 + x) (1 - (1 + x) exp(-x))/x^2.
+    /// Return the true part of backward Euler's defect k (G_n - G_{n-1})/2 if G
+    /// decays exponentially, by its relaxation 1/(1 + x): to 15 %, the exact
+    /// part 2 (1 + x) (1 - (1 + x) exp(-x))/x^2.
     ErrorRelaxation
     defect_of_decay(const ErrorRelaxation &relaxation)
     {
@@ -121,7 +119,7 @@ namespace Viscoplastic
 
 
 
-    /// The defect of one step, sample by sample, and its norms.
+    /// Adds the defect of one step to the fields, and computes its norms.
     template <int dim>
     class DefectOfStep
     {
@@ -159,7 +157,7 @@ namespace Viscoplastic
         , fades(std::isfinite(of_loads))
         , strains(stress_space.n_samples)
       {
-        // A power of a stress that grows is not linear in a long step.
+        // In a long step, a power of a growing stress is not linear in time.
         if (defect.first < 0. && !laws.have_constant_tangents())
           half_way = rate_half_way(laws, accepted, state);
         if (has_predictor && laws.thermal)
@@ -169,7 +167,7 @@ namespace Viscoplastic
           }
       }
 
-      /// Add it to the fields of the end of the step. Collective.
+      /// Add the defect to the fields of the end of the step. Collective.
       void
       add()
       {
@@ -199,7 +197,7 @@ namespace Viscoplastic
       }
 
     private:
-      /// Set what all samples of a cell have in common.
+      /// Set the members that all samples of a cell share.
       void
       enter(const std::size_t c)
       {
@@ -241,14 +239,14 @@ namespace Viscoplastic
           }
         else
           all = what_counts(c, s, i, all);
-        // Steps are chosen with the slope as the change of slope there.
+        // Without an earlier slope, step control assumes zero.
         if (!has_slope)
           all +=
             defect.second * k * (end.rate->rate[i] - accepted_rate.rate[i]);
       }
 
-      /// What is left of all of the defect at a sample, which is added to the
-      /// fields together with what becomes of earlier ones.
+      /// Return the part of the defect @p all of a sample that counts; add it
+      /// to the fields, and evolve their earlier errors.
       SymmetricTensor<2, 3>
       what_counts(const std::size_t            c,
                   const unsigned int           s,
@@ -269,8 +267,7 @@ namespace Viscoplastic
           carried = carry_history(i);
         if (fades && law)
           {
-            // What the history has changed is no relaxation of stress, nor
-            // what the loads have.
+            // Changes of G by history variables and by loads do not relax.
             const SymmetricTensor<2, 3> of_history =
               remembers ? change_by_history(i) : SymmetricTensor<2, 3>();
             const double           share = share_of_loads(change);
@@ -295,7 +292,7 @@ namespace Viscoplastic
         return step;
       }
 
-      /// Those of a cell.
+      /// Add the squared norms of a cell to the sums.
       void
       add_norms(const std::size_t c)
       {
@@ -310,8 +307,8 @@ namespace Viscoplastic
           add(of_rate, &end.rate->rate[first]);
       }
 
-      /// What the step has left out of z or history at a sample, to leading
-      /// order, whose rates at both ends are given; and the slope of that.
+      /// Return the defect of the step in z or history at a sample, to leading
+      /// order, for given rates at both ends, and set the slope of the rate.
       DEAL_II_ALWAYS_INLINE inline SymmetricTensor<2, 3>
       defect_of(const SymmetricTensor<2, 3> &old_rate,
                 const SymmetricTensor<2, 3> &rate,
@@ -323,7 +320,7 @@ namespace Viscoplastic
       {
         const SymmetricTensor<2, 3> change = rate - old_rate;
         SymmetricTensor<2, 3>       step   = defect.first * k * change;
-        // Heun's method takes the rate of its prediction for that of the end.
+        // Heun's method replaces the rate at the end by that of the predictor.
         // At the limit of stability nothing relaxes, and no rate changes.
         if (has_predictor)
           step += 0.5 * k * (old_rate + rate) - (value - old_value);
@@ -336,7 +333,8 @@ namespace Viscoplastic
         return step;
       }
 
-      /// Add the defect of history variables to what becomes of their error.
+      /// Evolve the error of history variables, add their defect, return
+      /// CarriedError.
       CarriedError
       carry_history(const std::size_t i)
       {
@@ -353,7 +351,7 @@ namespace Viscoplastic
         return carried;
       }
 
-      /// The part of the defect that is due to the change of history variables.
+      /// Return the part of the defect by the change of history variables.
       SymmetricTensor<2, 3>
       change_by_history(const std::size_t i) const
       {
@@ -364,8 +362,8 @@ namespace Viscoplastic
                 law->rate(stress, strain, *stiffness, point));
       }
 
-      /// The loads have changed G by no more than r times the change of the
-      /// stress.
+      /// Return the share of the change of G that loads explain: at most r
+      /// times the change of the stress.
       double
       share_of_loads(const SymmetricTensor<2, 3> &change) const
       {
@@ -377,7 +375,7 @@ namespace Viscoplastic
         return most < size ? most / size : 1.;
       }
 
-      // What relaxes by itself does so in a time 1/r, however long the step.
+      // In steps with k r below this, relaxation is resolved.
       static constexpr double resolved = 0.1;
 
       const StressSpace<dim>               &stress_space;
@@ -396,18 +394,18 @@ namespace Viscoplastic
       const bool                 fades;
       IrreversibleStress         half_way, heated;
 
-      // Of a cell:
+      // Data of the present cell:
       const ViscoplasticLaw *law       = nullptr;
       const Stiffness       *stiffness = nullptr;
       bool remembers = false, needs_stress = false, is_plain = false;
       std::vector<SymmetricTensor<2, 3>> strains;
       std::array<SymmetricTensor<2, 3>, GeometryInfo<dim>::vertices_per_cell>
         steps, changes;
-      // Of a sample:
+      // Data of the present sample:
       SymmetricTensor<2, 3> stress, strain;
       LawPoint              point;
 
-      /// Whose squared norms are added up.
+      /// The quantities whose squared norms are summed.
       enum Norm
       {
         of_step,

@@ -52,7 +52,7 @@ namespace Viscoplastic
           break;
         case BulkSolverKind::algebraic_multigrid:
           {
-            // What couples with everything is solved for by itself.
+            // Unknowns that couple with all others are solved for separately.
             std::vector<bool> apart(system.excluded);
             std::fill_n(apart.rbegin(), system.n_beyond_mesh, true);
             multigrid =

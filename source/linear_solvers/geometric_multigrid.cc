@@ -19,7 +19,7 @@ namespace Viscoplastic
   template <int dim>
   struct GeometricMultigrid<dim>::Level
   {
-    /// Owned, ascending.
+    /// Owned nodes of the level, ascending.
     std::vector<Node>                    nodes;
     Interpolation                        interpolation; // from below
     std::unique_ptr<MultigridLevel<dim>> space;
@@ -49,7 +49,7 @@ namespace Viscoplastic
                                     Node(hierarchy.first_level.size())))
       begins.push_back(begins.back() + n_owned);
 
-    // The first level is the last mesh that is still small.
+    // The first level is the finest mesh of at most coarse_size unknowns.
     std::vector<Node> n_new(hierarchy.n_levels, 0);
     for (const unsigned int mesh : hierarchy.first_level)
       if (mesh < hierarchy.n_levels)
@@ -111,7 +111,7 @@ namespace Viscoplastic
   GeometricMultigrid<dim>::fill()
   {
     const bool is_new = levels[0]->space == nullptr;
-    // A power of two changes no digit.
+    // Scaling by a power of two is exact.
     double largest = 0.;
     for (std::size_t i = 0; i < excluded.size(); ++i)
       largest = std::max(largest, matrix.diagonal(i));
@@ -264,7 +264,7 @@ namespace Viscoplastic
   GeometricMultigrid<dim>::vmult_in_frames(DistributedVector       &y,
                                            const DistributedVector &x) const
   {
-    // In single precision numbers have a small range.
+    // x is scaled, since single precision has a small range.
     const double size = x.linfty_norm();
     y                 = 0.;
     if (!(size > 0.) || !std::isfinite(size))
@@ -291,7 +291,7 @@ namespace Viscoplastic
         for (unsigned int d = 0; d < dim; ++d)
           to[d] = u[i * dim + d] / (scale * unit);
       }
-    // Unknowns beyond the mesh, by themselves.
+    // Unknowns that belong to no node of the mesh are solved for separately.
     for (std::size_t i = hierarchy.first_level.size() * dim;
          i < excluded.size();
          ++i)

@@ -22,7 +22,7 @@ namespace Viscoplastic
 
 
 
-  /// A solve under way: all vectors that it works on.
+  /// A solve in progress, with its vectors.
   class KrylovSolver::Solve : public ContactSolve
   {
   public:
@@ -73,8 +73,7 @@ namespace Viscoplastic
     double
     dual_norm(const Vector<double> &force) override
     {
-      // Not filtered by the truncation: the residual on sticking components, if
-      // any, is an error, too.
+      // Without truncation: residuals on sticking components are errors, too.
       product = residual;
       solver.restriction.add(-1., force, product);
       return norm_by_preconditioner(false);
@@ -115,7 +114,7 @@ namespace Viscoplastic
     double
     energy_norm() const override
     {
-      // Of a translation it is rounding, of either sign.
+      // For a translation, this is rounding of either sign.
       return std::sqrt(std::max(0., squared_norm));
     }
 
@@ -136,8 +135,8 @@ namespace Viscoplastic
     take_step(const double step) override
     {
       first_is_truncated.reset();
-      // K w = product and K u = load - residual but for excluded components,
-      // where w is zero.
+      // K w = product and K u = load - residual, except for excluded
+      // components, where w is zero.
       squared_norm +=
         step * (2. * (w * load - w * residual) + step * (w * product));
       u.add(step, w);
@@ -158,7 +157,7 @@ namespace Viscoplastic
         entry[i] = 0.;
     }
 
-    /// The residual and the norm of u by the matrix itself.
+    /// Compute the residual and the norm of u with the matrix.
     void
     compute_residual()
     {
@@ -169,7 +168,7 @@ namespace Viscoplastic
       first_is_truncated.reset();
     }
 
-    /// What correct() solves for, in product.
+    /// Set product to the right-hand side of correct().
     void
     set_right_side(const Vector<double> &force)
     {
@@ -179,12 +178,12 @@ namespace Viscoplastic
       solver.restriction.project(truncation, product);
     }
 
-    /// The root of product . M^-1 product.
+    /// Return (product . M^-1 product)^{1/2}.
     double
     norm_by_preconditioner(const bool is_truncated);
 
-    /// The dual norm of the vector in product, without the quality of the
-    /// preconditioner in it, or some lower bound above @p limit.
+    /// Return the dual norm of product, independently of the quality of the
+    /// preconditioner, or a lower bound above @p limit.
     double
     dual_norm_of_product(const double limit, unsigned int &iterations);
 
@@ -192,8 +191,8 @@ namespace Viscoplastic
     const DistributedVector &load;
     DistributedVector       &u;
     DistributedVector        residual, w, product;
-    /// What the preconditioner, with truncation or without, has made of
-    /// product, with which conjugate gradients begin.
+    /// The result of the preconditioner for product, with or without
+    /// truncation, with which conjugate gradients begin.
     DistributedVector   first;
     std::optional<bool> first_is_truncated;
     FaceTruncation      truncation;
@@ -203,8 +202,7 @@ namespace Viscoplastic
 
 
 
-  /// P (K + springs) P on vectors of the truncated space; without a truncation
-  /// K on all unknowns.
+  /// P (K + springs) P on the truncated space, or K on all unknowns.
   struct KrylovSolver::Solve::Operator
   {
     const Solve &solve;
@@ -234,7 +232,7 @@ namespace Viscoplastic
 
 
 
-  /// P M^{-1} P, likewise.
+  /// P M^{-1} P on the truncated space, or M^{-1} on all unknowns.
   struct KrylovSolver::Solve::Inverse
   {
     Solve     &solve;
@@ -246,7 +244,7 @@ namespace Viscoplastic
     {
       if (std::exchange(solve.first_is_truncated, {}) == is_truncated)
         {
-          // It is linear, and x that vector or a multiple of it.
+          // By linearity, since x is a multiple of product.
           y.equ((x * solve.product) / solve.product.norm_sqr(), solve.first);
           return;
         }
@@ -314,7 +312,7 @@ namespace Viscoplastic
                       "The conjugate gradient method does not "
                       "converge; for nearly incompressible bodies and flat "
                       "cells use the direct linear solver, on one rank."));
-        // What there is reduces the error: the next correction goes on from it.
+        // The result reduces the error: the next correction starts from it.
       }
     solver.restriction.tilt_motions(truncation, w);
     face_part = solver.restriction.gather(w);
@@ -332,10 +330,10 @@ namespace Viscoplastic
                                             unsigned int &iterations)
   {
     // A preconditioner for another stick set misjudges residuals on the face,
-    // so solve A w = R on all unknowns: w . R is the square of the norm less
-    // the square of the error, which grows from step to step.
-    // One that is made for all unknowns is worth its price where this takes
-    // long; beginning again makes all of it the same after a restart.
+    // so solve A w = R on all unknowns: w . R is the squared norm minus the
+    // squared error, and grows in each iteration. If this takes long, a
+    // preconditioner set up for all unknowns pays; restarting with it makes the
+    // result independent of restarts of the run.
     if (!(product.l2_norm() > 0.))
       return 0.;
     const auto square = [&](const DistributedVector &x) {
@@ -443,7 +441,7 @@ namespace Viscoplastic
       {
         const double error = pass == 0 ? solve.truncated_dual_norm(no_force) :
                                          solve.dual_norm(no_force);
-        // The first solution sets the scale of a start from zero.
+        // From zero, the first solution sets the scale.
         const double size = solve.size();
         const double left = std::max(tolerance * size, scale.rounding_error);
         if (error <= left)

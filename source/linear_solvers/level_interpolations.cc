@@ -53,7 +53,7 @@ namespace Viscoplastic
     const auto is_owned = [this](const Node node) {
       return node >= hierarchy.begin && node < hierarchy.end;
     };
-    // Rows of nodes of other ranks.
+    // Ask other ranks for rows of their nodes.
     const auto from_owners = [&](const std::set<Node> &foreign,
                                  const auto           &row) {
       const std::vector<Node> asked(foreign.begin(), foreign.end());
@@ -82,7 +82,7 @@ namespace Viscoplastic
       return found == rows.end() ? nothing : found->second;
     };
 
-    // What lies opposite, by nodes of the coarser mesh.
+    // Express the mortar rows by nodes of the coarser mesh.
     std::set<Node> others;
     for (const auto &of_node : opposite)
       for (const auto &other : of_node.second)
@@ -102,8 +102,9 @@ namespace Viscoplastic
           coarse_opposite[node] = by_coarse_nodes[node];
       }
 
-    // A displacement is that of its parents, and of what lies opposite to them;
-    // the unknown at an interface is what it differs by from the other side.
+    // Parents have the displacements opposite to them plus their jumps; a
+    // node's jump is its interpolated displacement minus the one opposite to
+    // it.
     std::set<Node> foreign_parents;
     if (begins.size() > 2)
       for (const Node node : nodes)

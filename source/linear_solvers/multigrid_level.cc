@@ -65,7 +65,7 @@ namespace Viscoplastic
         ghosts.erase(std::unique(ghosts.begin(), ghosts.end()), ghosts.end());
       }
 
-    // Numbers of this level: owned nodes rank by rank.
+    // Nodes of this level are numbered rank by rank.
     const auto counts = Utilities::MPI::all_gather(communicator, n_owned);
     const Node first =
       std::accumulate(counts.begin(),
@@ -112,7 +112,7 @@ namespace Viscoplastic
   std::vector<unsigned int>
   MultigridLevel<dim>::local_numbers(const std::vector<Node> &asked) const
   {
-    // A table, instead of a search for each.
+    // A table is faster than a search for each node.
     std::vector<unsigned int> number_of_owned(end - begin);
     for (unsigned int i = 0; i < n_owned; ++i)
       number_of_owned[nodes[i] - begin] = i;
@@ -161,9 +161,9 @@ namespace Viscoplastic
   NodeBlock<dim>
   MultigridLevel<dim>::smoothing_block(const unsigned int node) const
   {
-    // With half the row sums of what couples ranks, Gauss-Seidel in which they
-    // do not wait for each other converges as if they did (Baker, Falgout,
-    // Kolev, Yang, SISC 33, 2011).
+    // Adding half the absolute row sums of couplings between ranks,
+    // Gauss-Seidel without waiting converges as with it (Baker, Falgout, Kolev,
+    // Yang, SISC 33, 2011).
     auto [block, sums_of_others] = rows.diagonal_block(node);
     for (unsigned int d = 0; d < dim; ++d)
       block[d][d] += 0.5 * sums_of_others[d];

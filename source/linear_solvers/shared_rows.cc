@@ -15,8 +15,8 @@ namespace Viscoplastic
   {
     using Node = NodeHierarchy::Node;
 
-    /// Binary digits by which blocks are told apart: of their largest entry,
-    /// and of that of the row, below which there is only rounding.
+    /// Binary digits by which blocks are compared: of their largest entry, and
+    /// of that of the row, below which entries are rounding.
     constexpr int digits_of_block = 22;
     constexpr int digits_of_row   = 46;
 
@@ -61,7 +61,7 @@ namespace Viscoplastic
 
 
 
-    /// A hash, the same for equal blocks.
+    /// Return a hash, the same for equal blocks.
     template <int dim>
     std::size_t
     key(const PackedBlock<dim> &block)
@@ -89,13 +89,13 @@ namespace Viscoplastic
 
 
 
-    /// To multiples of a power of two that is at least 2^-51 of the entries.
+    /// Round to multiples of 2^exponent, at least 2^-51 of the entries.
     template <int dim>
     NodeBlock<dim>
     rounded(const NodeBlock<dim> &block, const int exponent)
     {
-      // Near this number, numbers are that far apart. (std::nearbyint takes a
-      // call for each entry where it is not known that the processor rounds.)
+      // Numbers near this one are multiples of 2^exponent. (std::nearbyint is a
+      // function call per entry unless the processor is known to round.)
       const double   large = std::ldexp(3., exponent + 51);
       NodeBlock<dim> result;
       for (unsigned int i = 0; i < dim; ++i)
@@ -130,7 +130,7 @@ namespace Viscoplastic
     std::vector<Neighbor> neighbors;
     std::vector<Block>    blocks;
     std::vector<double>   sizes;
-    // Rows so far by what their values come to.
+    // The distinct rows so far, by hash of their values.
     std::unordered_multimap<std::size_t, unsigned int> known;
     for (unsigned int i = 0; i < matrix.n_rows(); ++i)
       {
@@ -166,7 +166,7 @@ namespace Viscoplastic
                                  column,
                                  static_cast<unsigned int>(blocks.size() - 1)});
           }
-        // Neighbors in an order that does not depend on their numbers.
+        // Sort neighbors independently of their numbers.
         std::sort(neighbors.begin(),
                   neighbors.end(),
                   [](const Neighbor &a, const Neighbor &b) {

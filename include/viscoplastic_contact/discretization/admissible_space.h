@@ -36,31 +36,30 @@ namespace Viscoplastic
   ///   hanging nodes Cartesian. Matrices and load vectors are assembled in this
   ///   form, in which every prescribed component is one degree of freedom.
   ///
-  /// Where two bodies touch, the second form has the jump w = u - Q u of the
-  /// displacement across the interface in place of u at the nodes p of the
-  /// secondary side, Q being mortar_interpolation(): the change of variables
-  /// u_p = w_p + C_p sum_q Q_pq u_q (Wohlmuth and Krause, SIAM J. Sci. Comput.
-  /// 25, 2003), in which two bodies are one on a rigid foundation. C_p leaves
-  /// out what other conditions prescribe at the node.
+  /// At interfaces of two bodies, the second form has the jump w = u - Q u of
+  /// the displacement in place of u at the nodes p of the secondary side, with
+  /// Q = mortar_interpolation(): the change of variables u_p = w_p + C_p sum_q
+  /// Q_pq u_q (Wohlmuth and Krause, SIAM J. Sci. Comput. 25, 2003), which turns
+  /// two bodies into one on a rigid foundation. C_p excludes the directions
+  /// that other conditions prescribe at the node.
   ///
-  /// Built anew on every mesh, on degrees of freedom from distribute_nodes():
+  /// Constructed once per mesh, on degrees of freedom from distribute_nodes():
   /// the dim ones of a node are consecutive, so nodes are addressed by their
   /// first.
   template <int dim>
   class AdmissibleSpace
   {
   public:
-    /// Collective. Throws ExcMessage when the conditions leave a rigid motion
-    /// free, naming it, unless there is unilateral contact, which may prevent
-    /// it.
+    /// Collective. Throws ExcMessage, naming the motion, if the conditions
+    /// leave a rigid motion free, unless unilateral contact may prevent it.
     AdmissibleSpace(const DoFHandler<dim> &dof_handler,
                     const Scene<dim>      &scene);
 
     const DoFHandler<dim> &dof_handler;
     const Scene<dim>      &scene;
     const MPI_Comm         communicator;
-    /// The mapping whose JxW are weights of integrals over the body: with 2 pi
-    /// r for bodies of revolution.
+    /// The mapping whose JxW weight integrals over the body, including 2 pi r
+    /// for bodies of revolution.
     const Mapping<dim> &mapping;
     /// Normals of the curved boundaries that are in contact with another body;
     /// null if there are none.
@@ -69,20 +68,18 @@ namespace Viscoplastic
     /// mortar_interpolation().
     const std::map<types::boundary_id, MortarRows> mortar_rows;
     /// Degrees of freedom; relevant ones are at owned cells, their neighbors,
-    /// and opposite of these on another body.
+    /// and opposite to these on another body.
     const IndexSet owned, relevant;
-    /// The position among the relevant ones of one more unknown, where there
-    /// is: eps_zz axial_length in generalized plane strain, by how much a slice
-    /// of the length axial_length becomes longer. It is the first component of
-    /// a node of no mesh, behind all others; the second one is no unknown. The
-    /// last rank owns it, and it is relevant to all.
+    /// In generalized plane strain, the local index of the unknown eps_zz
+    /// axial_length: the elongation of a slice of the length axial_length. It
+    /// is the first component of an extra node behind the mesh, whose second
+    /// one is no unknown. The last rank owns it, and it is relevant to all.
     const std::optional<std::size_t> axial;
     /// The length that scales the unknown of the axial strain in generalized
     /// plane strain: the size of the body, equal on all its meshes.
     const double axial_length;
 
-    /// The owned cells, in the order of owned_cells(): that of all data that
-    /// have values in cells.
+    /// The owned cells, in the order of owned_cells(), as in all cell data.
     const std::vector<typename DoFHandler<dim>::active_cell_iterator> cells;
     /// Numbers of their shapes (see CellShapes).
     const std::vector<unsigned int> shapes;
@@ -103,14 +100,14 @@ namespace Viscoplastic
       return needs_springs;
     }
 
-    /// eps_zz of a displacement, by the local array of a ghosted vector.
+    /// Return eps_zz of a displacement; @p u: local array of a ghosted vector.
     double
     axial_strain(const double *u) const
     {
       return axial ? u[*axial] / axial_length : 0.;
     }
 
-    /// The position of the axial unknown among the owned ones, if it is.
+    /// Return the owned index of the axial unknown, if this rank owns it.
     std::optional<std::size_t>
     owned_axial() const
     {
@@ -119,8 +116,8 @@ namespace Viscoplastic
       return {};
     }
 
-    /// The rows and columns of a cell's matrix: the degrees of freedom of its
-    /// nodes, and the axial one.
+    /// Set @p dofs to the rows of a cell's matrix: the degrees of freedom of
+    /// its nodes, and the axial ones.
     void
     get_dofs(const typename DoFHandler<dim>::active_cell_iterator &cell,
              std::vector<types::global_dof_index>                 &dofs) const
@@ -131,16 +128,17 @@ namespace Viscoplastic
         dofs.push_back(dof_handler.n_dofs() + d);
     }
 
-    /// Degrees of freedom on the mesh that this one is refined from; 0 where it
-    /// is not refined. The same on all ranks.
+    /// Return the number of degrees of freedom on the coarse mesh; 0 if the
+    /// mesh is not refined. The same on all ranks.
     types::global_dof_index
     n_first_dofs() const;
 
-    /// Make a matrix in frames zero, with entries for all cells. Collective.
+    /// Set @p matrix to zero, in frames, with entries for all cells.
+    /// Collective.
     void
     reinit(DistributedMatrix &matrix) const;
 
-    /// Add a Cartesian cell matrix to one in nodal frames. Both change.
+    /// Add a Cartesian cell matrix to one in nodal frames; changes both.
     void
     add_cell_matrix(std::vector<types::global_dof_index> &dofs,
                     FullMatrix<double>                   &cell_matrix,
@@ -153,7 +151,7 @@ namespace Viscoplastic
       return hanging_cartesian;
     }
 
-    /// A vector of owned entries, and one with ghosts on `relevant`.
+    /// Return a vector of owned entries, and one with ghosts on `relevant`.
     DistributedVector
     owned_vector() const
     {
@@ -166,21 +164,20 @@ namespace Viscoplastic
     }
 
     /// Add @p cartesian, sums over the owned cells in the order of `relevant`,
-    /// to a load vector in frames: hanging nodes pass their share on.
+    /// to a load vector in frames, including the shares of hanging nodes.
     /// Changes @p cartesian; collective.
     void
     add_cartesian_load(std::vector<double> &cartesian,
                        DistributedVector   &load) const;
 
-    /// The Cartesian, ghosted form of @p in_frames; hanging nodes are
+    /// Set @p ghosted to the Cartesian form of @p in_frames, with hanging nodes
     /// interpolated. Collective.
     void
     to_cartesian(const DistributedVector &in_frames,
                  DistributedVector       &ghosted) const;
 
-    /// Make the displacement at nodes of secondary boundaries that relative to
-    /// the other body: subtract its mortar interpolation. Cartesian, with
-    /// ghosts. Collective.
+    /// Subtract, at nodes of secondary boundaries, the mortar interpolation of
+    /// the other body's displacement. Cartesian, with ghosts. Collective.
     void
     make_relative(DistributedVector &ghosted) const;
 
@@ -193,25 +190,25 @@ namespace Viscoplastic
         hanging_cartesian.distribute(cartesian);
     }
 
-    /// The inverse of to_cartesian(): owned entries, zero at hanging nodes.
+    /// Invert to_cartesian(): owned entries, zero at hanging nodes.
     void
     to_frames(const DistributedVector &ghosted,
               DistributedVector       &in_frames) const;
 
-    /// u_p = w_p + projector sum weight u_q at an independent node; nodes by
-    /// the position of their first entries among the relevant ones.
+    /// The coupling u_p = w_p + projector sum weight u_q at an independent
+    /// node; nodes by the relevant index of their first component.
     struct Coupling
     {
       std::size_t                                 node;
       Tensor<2, dim>                              projector; // C_p
       std::vector<std::pair<std::size_t, double>> others;
-      /// The place opposite, by the same interpolation, and MortarRow::bulge.
+      /// The opposite position, interpolated likewise, and MortarRow::bulge.
       Point<dim> opposite;
       double     bulge;
     };
 
-    /// The coupling of the independent node of a secondary boundary whose first
-    /// degree of freedom is @p first_dof.
+    /// Return the coupling of the independent node of a secondary boundary
+    /// whose first degree of freedom is @p first_dof.
     const Coupling &
     coupling_at(const types::global_dof_index first_dof) const
     {
@@ -219,7 +216,7 @@ namespace Viscoplastic
         [couplings_of_node.at(relevant.index_within_set(first_dof))[0].first];
     }
 
-    /// The normal of a boundary in contact at a locally relevant node.
+    /// Return the normal of a contact boundary at a locally relevant node.
     Tensor<1, dim>
     normal_at(const types::global_dof_index first_dof,
               const BoundaryCondition<dim> &condition) const
@@ -228,7 +225,7 @@ namespace Viscoplastic
                                        condition.normal;
     }
 
-    /// The pair of boundaries of which a condition makes the secondary one.
+    /// Return the pair whose secondary boundary is that of @p condition.
     ContactPair<dim>
     contact_pair(const BoundaryCondition<dim> &condition) const
     {
@@ -239,8 +236,8 @@ namespace Viscoplastic
               scene};
     }
 
-    /// Owned degrees of freedom that are no unknowns: prescribed or hanging;
-    /// one entry for each owned index.
+    /// Return, for each owned index, whether the degree of freedom is
+    /// prescribed or hanging, and so no unknown.
     const std::vector<bool> &
     excluded() const
     {
@@ -264,8 +261,8 @@ namespace Viscoplastic
       unsigned int            frame; // index into frames
     };
 
-    /// The prescribed values at time t of a node, in the order of the fixed
-    /// components of its frame; zero behind them.
+    /// Return the prescribed values at time t of a node, in the order of the
+    /// fixed components of its frame, padded by zeros.
     Tensor<1, dim>
     prescribed_at(const BoundaryNode &node, const double t) const;
 
@@ -285,8 +282,7 @@ namespace Viscoplastic
       return frames[index];
     }
 
-    /// The frame of a node of `relevant', by the first degree of freedom of the
-    /// node.
+    /// Return the frame of a relevant node, by its first degree of freedom.
     const NodalFrame<dim> &
     frame_at(const types::global_dof_index first_dof) const
     {
@@ -304,18 +300,18 @@ namespace Viscoplastic
             frames[frame_of_node[n / dim]].directions);
     }
 
-    /// The rigid body modes (3 or 6) in frames on owned entries, zero where
-    /// excluded; each relative to the center of the body.
+    /// Return the rigid body modes (3 or 6) in frames on owned entries, zero
+    /// where excluded; each relative to the center of the body. Collective.
     std::vector<DistributedVector>
     rigid_body_modes() const;
 
-    /// A basis of the rigid motions that only contact can prevent, in the same
-    /// form; no point moves by more than about 1.
+    /// Return a basis of the rigid motions that only contact can prevent, in
+    /// the same form; no point moves by more than about 1. Collective.
     std::vector<DistributedVector>
     motions_held_by_contact() const;
 
-    /// The name of a combination of free rigid motions, such as "rotation", by
-    /// its largest component; @p in_free_motions: its coefficients.
+    /// Return the name of a combination of free rigid motions, e.g. "rotation",
+    /// by its largest component; @p in_free_motions: its coefficients.
     std::string
     name_of_motion(const std::vector<double> &in_free_motions) const;
 
@@ -324,7 +320,7 @@ namespace Viscoplastic
     make_frames();
     void
     make_couplings();
-    /// v := v + factor C Q u at owned nodes, u Cartesian: the mortar
+    /// Add factor C Q u to v at owned nodes, u Cartesian: the mortar
     /// interpolation Q u in the coupled directions C, or in all of them.
     void
     add_opposite(const double             factor,
@@ -342,13 +338,13 @@ namespace Viscoplastic
           return true;
       return false;
     }
-    /// Replace a cell matrix by that in the jumps across interfaces, whose
-    /// degrees of freedom include those opposite.
+    /// Transform a cell matrix to jumps across interfaces, and append the
+    /// opposite degrees of freedom to @p dofs.
     void
     couple(std::vector<types::global_dof_index> &dofs,
            FullMatrix<double>                   &cell_matrix) const;
-    /// Replace hanging nodes by those that they hang on, which become further
-    /// degrees of freedom; on their own diagonal something is left.
+    /// Distribute rows of hanging nodes to their parents, which are appended to
+    /// @p dofs; the diagonal entries of hanging nodes stay positive.
     void
     resolve_hanging_nodes(std::vector<types::global_dof_index> &dofs,
                           FullMatrix<double> &cell_matrix) const;
@@ -357,14 +353,14 @@ namespace Viscoplastic
            FullMatrix<double>                         &cell_matrix) const;
     void
     check_rigid_motions();
-    /// Number the parts of the body that owned nodes are of; returns these
-    /// numbers with ghosts, at the first entry of each node. Collective.
+    /// Number the connected parts of the body; return the numbers of nodes,
+    /// with ghosts, at the first entry of each node. Collective.
     DistributedVector
     number_parts(const std::vector<unsigned int> &part_of_coarse_cell);
-    /// A rigid motion of one part or of all, in nodal frames. Collective.
+    /// Return a rigid motion of one part or of all, in frames. Collective.
     DistributedVector
     rigid_motion(const unsigned int motion, const unsigned int part) const;
-    /// The mean position of the nodes. Collective.
+    /// Return the mean position of the nodes. Collective.
     Point<dim>
     center() const
     {
@@ -376,9 +372,9 @@ namespace Viscoplastic
                         Utilities::MPI::sum(count, communicator));
     }
 
-    /// The rigid motions that only contact can prevent: of each of the parts
-    /// that move by themselves, translations and rotations times `radius`, the
-    /// largest distance from the center.
+    /// The rigid motions that only contact can prevent, by coefficients for
+    /// each separate part: of translations, and of rotations times `radius`,
+    /// the largest distance from the center.
     std::vector<std::vector<double>> free_motions;
     /// The part of the body of each owned node; empty where there is one part.
     std::vector<unsigned int> part_of_node;
@@ -386,14 +382,14 @@ namespace Viscoplastic
     bool                      needs_springs = false;
     AffineConstraints<double> hanging_cartesian;
     bool                      any_hanging;
-    /// Position of the first owned entry among the relevant ones.
+    /// Relevant index of the first owned entry.
     std::size_t first_owned;
     /// Frame 0 is that of a node without conditions.
     std::vector<NodalFrame<dim>> frames;
-    /// Index into frames for each node of `relevant`, by position / dim.
+    /// Index into frames for each node of `relevant', by relevant index / dim.
     std::vector<unsigned int> frame_of_node;
-    /// The nodes of `relevant` (position of their first entry) whose frames
-    /// are rotated: few, so that rotations cost little.
+    /// The nodes of `relevant` (index of the first component) with rotated
+    /// frames: few, so that rotations cost little.
     std::vector<std::size_t>  rotated_nodes;
     std::vector<BoundaryNode> nodes;
     std::vector<bool>         is_excluded;
@@ -403,11 +399,11 @@ namespace Viscoplastic
     std::vector<Point<dim>> node_position;
 
     std::vector<Coupling> couplings;
-    /// The couplings of a node, with weight 1, or of the parents that it hangs
-    /// on, with theirs; by position of the node.
+    /// The couplings of a node, with weight 1, or those of its parents, with
+    /// their weights, if it hangs; by relevant index of the node.
     std::map<std::size_t, std::vector<std::pair<std::size_t, double>>>
       couplings_of_node;
-    /// Whether a node is in couplings_of_node, by position / dim.
+    /// Whether a node is in couplings_of_node, by relevant index / dim.
     std::vector<bool> coupled_nodes;
   };
 } // namespace Viscoplastic

@@ -7,13 +7,14 @@
 
 namespace Viscoplastic
 {
-  /// The meshes that p4est has refined into the present one, as multigrid needs
-  /// them. Collective.
+  /// Return the hierarchy of nodes on the meshes that p4est has refined into
+  /// the present one, for multigrid. Collective.
   template <int dim>
   NodeHierarchy
   make_node_hierarchy(const AdmissibleSpace<dim> &space);
 
-  /// The matrix and the unknowns of a space, for linear solvers.
+  /// Return the matrix and the unknowns of a space, for linear solvers;
+  /// references all arguments.
   template <int dim>
   BulkSystem
   make_bulk_system(const AdmissibleSpace<dim> &space,

@@ -24,26 +24,26 @@ namespace Viscoplastic
   may_lock(const Scene<dim> &scene, const double max_nu);
 
   /// Whether the volumetric strain is the mean over each cell: as the scene
-  /// says, or by what `automatic' stands for where the largest Poisson's ratio
-  /// is @p max_nu.
+  /// says, or may_lock() if it says `automatic'.
   template <int dim>
   bool
   uses_mean_dilatation(const Scene<dim> &scene, const double max_nu);
 
 
 
-  /// A scene on one mesh: everything that depends on the mesh but neither on
-  /// the state nor on how steps are solved. Declared in the order of
-  /// dependence; made anew when the mesh changes.
+  /// A scene on one mesh: all that depends on the mesh but neither on the state
+  /// nor on the solution of steps. Members are declared in order of dependence.
+  /// Constructed anew for each mesh.
   template <int dim>
   class Discretization
   {
   public:
-    /// Make all but the matrix, which costs most. Throws ExcMessage if the
-    /// scene does not fit the mesh. Collective.
+    /// Set up all but the matrix, the most expensive part. Throws ExcMessage if
+    /// the scene does not fit the mesh. Collective.
     Discretization(const DoFHandler<dim> &dof_handler, const Scene<dim> &scene);
 
-    /// Make the matrix. Collective.
+    /// Assemble the matrix. Collective. Throws ExcMessage if springs are too
+    /// soft.
     void
     assemble_matrix();
 
@@ -53,15 +53,15 @@ namespace Viscoplastic
       return space.scene;
     }
 
-    /// The face for solvers: null if there is nothing that could slip or open,
-    /// also where other conditions hold all nodes of these pieces.
+    /// The face for solvers: null if nothing could slip or open, also if other
+    /// conditions hold all nodes of these boundaries.
     const ContactFace<dim> *
     slipping_face() const
     {
       return face_restriction().n_global_dofs() > 0 ? face.get() : nullptr;
     }
 
-    /// The restriction to the contact points; to none where there are none.
+    /// The restriction to the contact points, which may be none.
     const FaceRestriction &
     face_restriction() const
     {
@@ -91,7 +91,7 @@ namespace Viscoplastic
     std::unique_ptr<HeldTraction<dim>> held_traction;
     /// The sliding of interfaces; null without contact between bodies.
     std::unique_ptr<InterfaceSlide<dim>> slide;
-    /// A lower bound on the number of time steps on this mesh.
+    /// The expected number of time steps on this mesh.
     unsigned int n_steps;
     /// The matrix of a(.,.) with that of springs, in nodal frames.
     DistributedMatrix matrix;

@@ -10,8 +10,8 @@
 
 namespace Viscoplastic
 {
-  /// The elastic tensor of each owned cell, taken at the cell's center; one
-  /// object for a material in which it is the same everywhere.
+  /// The elastic tensor of each owned cell, taken at the cell's center; uniform
+  /// materials share one object.
   template <int dim>
   class ElasticModuli
   {
@@ -20,18 +20,18 @@ namespace Viscoplastic
     /// Collective.
     explicit ElasticModuli(const AdmissibleSpace<dim> &space);
 
-    /// A body with one tensor everywhere, e.g. the identity for a projection.
+    /// Use one tensor everywhere, e.g. the identity for a projection.
     explicit ElasticModuli(const Stiffness &stiffness);
 
-    /// @p cell counts the owned active cells in the order of iteration.
+    /// Return the tensor of a cell, by its index among the owned ones.
     const Stiffness &
     operator()(const std::size_t cell) const
     {
       return moduli[number.empty() ? 0 : number[cell]];
     }
 
-    /// Largest Poisson's ratio of the body, also of materials that are absent
-    /// in the present stage; the same on all ranks.
+    /// Return the largest Poisson's ratio of the body, including materials
+    /// absent in the present stage; the same on all ranks.
     double
     max_poissons_ratio() const
     {
@@ -45,9 +45,9 @@ namespace Viscoplastic
   };
 
 
-  /// The bilinear form a(u,v) = int E eps(u) : eps(v), fully integrated, as a
-  /// matrix in nodal frames without hanging nodes. Prescribed components keep
-  /// their rows: they give the reactions, and whoever solves leaves them out.
+  /// Assemble the bilinear form a(u,v) = int E eps(u) : eps(v), fully
+  /// integrated, in nodal frames without hanging nodes. Prescribed components
+  /// keep their rows, which give reactions; solvers exclude them. Collective.
   ///
   /// With @p mean_dilatation, tr eps is replaced by its mean over the cell.
   template <int dim>
@@ -57,11 +57,10 @@ namespace Viscoplastic
                           const bool                  mean_dilatation,
                           DistributedMatrix          &matrix);
 
-  /// The same form for one cell: strains of the shape functions at the points
-  /// of @p fe_values against each other, with hoop strains of rings. Declared
-  /// here for the tests of its coercivity. A matrix with a node more than the
-  /// cell has, in generalized plane strain, also has what @p axial_strain as
-  /// that of its first component makes.
+  /// Set @p cell_matrix to this form on one cell, at the points of @p
+  /// fe_values, with hoop strains for rings. Declared here for tests of its
+  /// coercivity. A matrix with an extra node, in generalized plane strain,
+  /// includes the axial unknown, which makes the strain zz @p axial_strain.
   template <int dim>
   void
   elastic_cell_matrix(const FEValues<dim> &fe_values,

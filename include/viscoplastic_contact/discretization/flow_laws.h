@@ -18,8 +18,8 @@ namespace Viscoplastic
   class FlowLaws
   {
   public:
-    /// Throws ExcMessage if a parameter is out of range somewhere, or a law
-    /// does not go with the elastic tensor of a cell.
+    /// Throws ExcMessage if a parameter is out of range somewhere, or a law is
+    /// not compatible with the elastic tensor of a cell.
     explicit FlowLaws(const StressSpace<dim> &stress_space);
 
     const StressSpace<dim> &stress_space;
@@ -27,8 +27,8 @@ namespace Viscoplastic
     /// The temperature; null in scenes that have none.
     const std::unique_ptr<const ThermalStrain<dim>> thermal;
 
-    /// Whether any material has a law, and one with a cap on the stress.
-    /// Known on all ranks.
+    /// Whether any material has a law, a cap on the stress, and a stored energy
+    /// of its own. Known on all ranks.
     bool any, any_cap, any_own_energy;
 
     /// Whether the derivatives of G are the same at all times and states.
@@ -130,17 +130,16 @@ namespace Viscoplastic
       return AtTime(*this, t, nullptr);
     }
 
-    /// The laws at time t with these history variables, which stay in use.
+    /// The laws at time t with these history variables, which are referenced.
     AtTime
     at(const double t, const IrreversibleStress &history) const
     {
       return AtTime(*this, t, history.empty() ? nullptr : &history);
     }
 
-    /// What a manufactured solution adds to G at a sample,
-    /// sigma' - E eps(u') - G(t, sigma, eps(u)) of that solution; zero in other
-    /// scenes. The time derivatives are those of the step on this side of
-    /// the time of @p now.
+    /// Return the source of a manufactured solution in G at a sample, sigma' -
+    /// E eps(u') - G(t, sigma, eps(u)) of that solution; zero in other scenes.
+    /// @p side: the one-sided time derivatives at the time of @p now.
     SymmetricTensor<2, 3>
     source(const AtTime                           &now,
            const std::size_t                       cell,
@@ -157,9 +156,9 @@ namespace Viscoplastic
     };
 
     std::vector<Entry> materials;
-    /// Index into materials; empty if there is but one.
+    /// Index into materials; empty if there is only one.
     std::vector<unsigned int> material_of_cell;
-    /// The parameters at each sample; empty unless those of some law depend on
+    /// The parameters at each sample; empty unless some law's depend on
     /// position but not on time.
     std::vector<LawParameters> parameters;
   };
@@ -173,22 +172,22 @@ namespace Viscoplastic
     /// The largest relaxation rate r; forward Euler is stable for k <= 2/r.
     /// Collective result.
     double relaxation_rate;
-    /// Volume of the samples with stresses beyond the cap of their law.
-    /// Collective result.
-    double capped_volume;
-    /// The sample with the largest rate, or the first one of those. Collective
+    /// Volume of the samples with stresses beyond their law's cap. Collective
     /// result.
+    double capped_volume;
+    /// The position of the largest relaxation rate, the first one if several
+    /// are equal. Collective result.
     Point<3> critical_position = {};
-    /// H at each sample, where there are history variables.
+    /// The history rate H at each sample; empty without history variables.
     IrreversibleStress history_rate = {};
-    /// The rates at which radial flow relaxes stress, at each sample: across
-    /// its deviator s, |G|/|s|, and along. Only for quantities of interest
-    /// whose errors are carried on from step to step.
+    /// The relaxation rates of the stress under radial flow, at each sample:
+    /// across its deviator s, |G|/|s|, and along. Only for quantities of
+    /// interest whose time errors are carried from step to step.
     std::vector<std::array<double, 2>> relaxation = {};
   };
 
-  /// The rate G at all samples of all cells, by one evaluation of the law a
-  /// cell, and H; a source is that of the step on this side of t. Collective.
+  /// Evaluate G and H at all samples, by one evaluation of the law per cell. @p
+  /// side: of a source's time derivatives at t. Collective.
   template <int dim>
   FlowRate
   evaluate_flow(const FlowLaws<dim>                    &laws,
@@ -199,9 +198,9 @@ namespace Viscoplastic
 
 
 
-  /// Backward Euler at all samples: z_n for the strains of @p ghosted_u by
-  /// Newton's method from @p start; elastic cells keep their z. Throws on all
-  /// ranks where there is no solution. Collective.
+  /// Return z_n by backward Euler at all samples for the strains of @p
+  /// ghosted_u, by Newton's method from @p start; elastic cells keep their z.
+  /// Throws on all ranks if there is no solution. Collective.
   template <int dim>
   IrreversibleStress
   implicit_irreversible_stress(const typename FlowLaws<dim>::AtTime &laws,
@@ -211,8 +210,8 @@ namespace Viscoplastic
                                const double              k,
                                const IrreversibleStress &start);
 
-  /// Backward Euler for the history variables of a state, whose stress is that
-  /// of the end of the step, with those of the beginning. Collective.
+  /// Advance the history variables of a state by backward Euler, at the stress
+  /// of the end of the step. Collective.
   template <int dim>
   void
   advance_history(const typename FlowLaws<dim>::AtTime &laws,

@@ -16,7 +16,7 @@ namespace Viscoplastic
   {
     /// u of the state, in nodal frames.
     DistributedVector u;
-    /// L(t, .), and its resultant.
+    /// The load L(t, .), and its resultant.
     Load<dim> load;
     /// (z, eps(.)), empty if the scene has no z, and a(u, .) + (z, eps(.)).
     DistributedVector irreversible, internal;
@@ -34,8 +34,8 @@ namespace Viscoplastic
     }
   };
 
-  /// @p irreversible: irreversible_forces() of the state, if they are known.
-  /// Collective.
+  /// Evaluate the forces of a state; @p irreversible: irreversible_forces() of
+  /// the state, if known. Collective.
   template <int dim>
   Forces<dim>
   evaluate_forces(const StressSpace<dim>  &stress_space,
@@ -44,39 +44,38 @@ namespace Viscoplastic
                   const State<dim>        &state,
                   DistributedVector        irreversible = DistributedVector());
 
-  /// What rounding leaves of a state in the energy norm: of displacements of
-  /// the whole body, as it is carried along, and of loads and forces of z that
-  /// cancel.
+  /// The rounding error of a state in the energy norm: by displacements of the
+  /// whole body, and by loads and forces of z that cancel.
   struct EnergyRounding
   {
     double size;
-    /// Whether the strain energy of the body is within it.
+    /// Whether the strain energy of the body is below it.
     bool is_all_of_the_strain;
   };
 
-  /// Collective.
+  /// Estimate the rounding error of a state. Collective.
   template <int dim>
   EnergyRounding
   energy_rounding(const AdmissibleSpace<dim> &space,
                   const DistributedMatrix    &matrix,
                   const Forces<dim>          &forces);
 
-  /// The forces on the body at prescribed components, summed for each boundary
-  /// and support, by id. The force at a node that several conditions hold has a
-  /// part along the direction of each condition, which counts for its id, so
-  /// that the sum over the ids is the total. Collective.
+  /// Return the forces on the body at prescribed components, summed by boundary
+  /// and support id. At nodes with several conditions, the force is split into
+  /// parts along their directions, each counted for its id, so that the sum
+  /// over the ids is the total. Collective.
   template <int dim>
   std::map<types::boundary_id, Tensor<1, dim>>
   reactions(const AdmissibleSpace<dim> &space, const Forces<dim> &forces);
 
-  /// The integral of sigma_zz over the section, in generalized plane strain.
+  /// Return the integral of sigma_zz over the section, the axial force.
   /// Collective.
   template <int dim>
   double
   axial_force(const AdmissibleSpace<dim> &space, const Forces<dim> &forces);
 
-  /// Work by prescribed displacements and loads between two states, with mean
-  /// forces (trapezoidal rule). Collective.
+  /// Return the work of prescribed displacements and loads between two states,
+  /// with mean forces (trapezoidal rule). Collective.
   template <int dim>
   double
   external_work(const AdmissibleSpace<dim> &space,
@@ -84,13 +83,13 @@ namespace Viscoplastic
                 const Forces<dim>          &forces);
 
 
-  /// Defects of the discrete friction law, zero up to rounding, and (first) the
-  /// resultant friction force.
+  /// Defects of the discrete friction law, zero up to rounding, and areas, slip
+  /// and work of friction in a step.
   struct FrictionIdentities
   {
     /// max |lambda_c|/rho_c, at most 1.
     double max_utilization = 0.;
-    /// max |s_c| where sticking, measured on the displacement.
+    /// max |s_c| where sticking, computed from the displacement.
     double max_stick_slip = 0.;
     /// max |lambda_c - rho_c s_c/|s_c||/rho_c where slipping.
     double slip_misalignment = 0.;
@@ -99,8 +98,8 @@ namespace Viscoplastic
     double stick_area = 0., slip_area = 0.;
     /// sum_c lambda_c . s_c of the step.
     double dissipation = 0.;
-    /// Work of a moving foundation on the body, -sum_c lambda_c . dw_c with
-    /// the mean of the multipliers before and after, as external_work() has.
+    /// Work of a moving foundation on the body, -sum_c lambda_c . dw_c with the
+    /// mean of the multipliers before and after, as in external_work().
     double foundation_work = 0.;
   };
 
@@ -110,18 +109,18 @@ namespace Viscoplastic
   {
     /// sum_c p_c n_c: the force of the body on the foundation.
     Tensor<1, dim> force;
-    /// The area of the points that touch, and of all.
+    /// The area of the points in contact, and of all.
     double contact_area = 0., area = 0.;
     /// The largest pressure p_c/area, gap, and penetration of compliant
     /// foundations.
     double max_pressure = 0., max_gap = 0., max_penetration = 0.;
-    /// Work of a foundation that moves along its normal: - sum_c p_c n_c . du_c
-    /// with the mean of the multipliers before and after, which is that on the
-    /// body, and what the foundation stores in the step.
+    /// Work of a foundation that moves along its normal: -sum_c p_c n_c . du_c,
+    /// the work on the body with the mean of the multipliers before and after,
+    /// plus the energy that the foundation stores in the step.
     double foundation_work = 0.;
   };
 
-  /// @p change of the displacement in the step, in frames. Collective.
+  /// Summarize contact; @p change: of u in the step, in frames. Collective.
   template <int dim>
   NormalContact<dim>
   summarize_contact(const ContactFace<dim>  &face,
@@ -129,7 +128,8 @@ namespace Viscoplastic
                     const ContactState      &state,
                     const DistributedVector &change);
 
-  /// @p change of the displacement in the step, in frames. Collective.
+  /// Check the friction law; @p change: of u in the step, in frames; @p
+  /// max_displacement: the scale of rounding. Collective.
   template <int dim>
   FrictionIdentities
   check_friction(const ContactFace<dim>  &face,

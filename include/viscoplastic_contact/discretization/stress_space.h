@@ -15,23 +15,23 @@
 namespace Viscoplastic
 {
   /// The irreversible stress z = sigma - E eps(u), an element of Q_h by its
-  /// coefficients: StressSpace::n_samples tensors for each owned cell. Always
-  /// tensors of three dimensions: plane strain has z_zz.
+  /// coefficients: StressSpace::n_samples tensors for each owned cell, in three
+  /// dimensions, as plane strain has z_zz.
   using IrreversibleStress = std::vector<SymmetricTensor<2, 3>>;
 
 
   /// The space Q_h of stresses, the paper's H^h: symmetric tensors that are
-  /// constant in each cell, FE_DGQ(0). As its refinement, tensors at the Gauss
-  /// points of each cell, FE_DGQArbitraryNodes of QGauss(2). An element of the
-  /// space is a list of coefficients, its samples.
+  /// constant in each cell, FE_DGQ(0), or as a refinement have values at its
+  /// Gauss points, FE_DGQArbitraryNodes of QGauss(2). An element of the space
+  /// is a list of coefficients, its samples.
   ///
-  /// The space knows the projection P_Qh of strains, (3.1), and its transpose,
-  /// the virtual work of stresses. It keeps the gradients of the shape
-  /// functions of V_h, projected, so that the time loop needs no FEValues; once
-  /// for all cells of a shape.
+  /// The space computes the projection P_Qh of strains, (3.1), and its
+  /// transpose, the virtual work of stresses. It stores projected gradients of
+  /// the shape functions of V_h, once for all cells of a shape, so that the
+  /// time loop needs no FEValues.
   ///
-  /// In generalized plane strain the strain has zz of the whole section, which
-  /// stresses work on, too.
+  /// In generalized plane strain the strain includes the uniform zz of the
+  /// section, on which stresses do work, too.
   ///
   /// With mean dilatation, the strain has the volumetric part of its cell mean
   /// and stresses act on such strains, as in the elastic form.
@@ -49,10 +49,10 @@ namespace Viscoplastic
     const bool                  mean_dilatation;
     /// The element of each component of a stress.
     const std::unique_ptr<const FiniteElement<dim>> element;
-    /// Coefficients of a cell: 1, or those at 2^dim Gauss points.
+    /// Coefficients of a cell: 1, or 2^dim at Gauss points.
     const unsigned int n_samples;
 
-    /// Owned cells.
+    /// Return the number of owned cells.
     std::size_t
     n_cells() const
     {
@@ -78,18 +78,18 @@ namespace Viscoplastic
              positions[space.shapes[cell] * n_samples + s];
     }
 
-    /// P_Qh eps(u) in a cell: the mean strain, or that at the Gauss points.
-    /// @p u: local array of a ghosted vector.
+    /// Set @p strain to P_Qh eps(u) in a cell: the mean strain, or that at the
+    /// Gauss points. @p u: local array of a ghosted vector.
     void
     strains(const std::size_t      cell,
             const double          *u,
             SymmetricTensor<2, 3> *strain) const;
 
-    /// The mean of these strains, for the price of one.
+    /// Return the mean of these strains, at the cost of one.
     SymmetricTensor<2, 3>
     mean_strain(const std::size_t cell, const double *u) const;
 
-    /// The positions in @p u of the first components at the vertices of a cell.
+    /// Return the indices in @p u of the first components at a cell's vertices.
     const unsigned int *
     nodes_of_cell(const std::size_t cell) const
     {
@@ -103,15 +103,15 @@ namespace Viscoplastic
                      const double                 factor,
                      double                      *load) const;
 
-    /// Add int C eps(u) : eps(v) with C at each sample to the matrix of a cell,
-    /// Cartesian, in the order of AdmissibleSpace::get_dofs(). Strains and
-    /// virtual work are those of the functions above. @p tangent: symmetric.
+    /// Add int C eps(u) : eps(v), C = @p tangent at each sample, symmetric, to
+    /// a Cartesian cell matrix in the order of AdmissibleSpace::get_dofs(),
+    /// with strains and virtual work as in the functions above.
     void
     add_stiffness(const std::size_t            cell,
                   const SymmetricTensor<4, 3> *tangent,
                   FullMatrix<double>          &cell_matrix) const;
 
-    /// The mean of a cell's samples: the projection to piecewise constants.
+    /// Return the mean of a cell's samples: the projection to constants.
     SymmetricTensor<2, 3>
     mean(const std::size_t cell, const SymmetricTensor<2, 3> *samples) const
     {
@@ -123,7 +123,7 @@ namespace Viscoplastic
       return result;
     }
 
-    /// int E^-1 a : b over a cell, from its samples.
+    /// Return int E^-1 a : b over a cell, from its samples.
     DEAL_II_ALWAYS_INLINE double
     complementary_product(const std::size_t            cell,
                           const SymmetricTensor<2, 3> *a,
@@ -133,14 +133,14 @@ namespace Viscoplastic
         n_samples, &weights[space.shapes[cell] * n_samples], a, b);
     }
 
-    /// sigma = E eps(u) + z, cell means; @p z may be empty (no viscosity).
+    /// Return cell means of sigma = E eps(u) + z; @p z may be empty.
     std::vector<SymmetricTensor<2, 3>>
     mean_stress(const DistributedVector  &ghosted_u,
                 const IrreversibleStress &z) const;
 
-    /// For each child of a cell, the matrix from the values at the samples of
-    /// the parent to those at the samples of the child: interpolation by the
-    /// polynomial through the parent's samples.
+    /// Return for each child the matrix from values at the samples of the
+    /// parent to those of the child: interpolation by the polynomial through
+    /// the parent's.
     std::vector<FullMatrix<double>>
     prolongation() const;
 
@@ -150,7 +150,7 @@ namespace Viscoplastic
 
     using NodalValues = std::array<Tensor<1, dim>, n_vertices>;
 
-    /// u at the vertices of a cell.
+    /// Return u at the vertices of a cell.
     NodalValues
     displacements(const std::size_t cell, const double *u) const
     {
@@ -162,8 +162,8 @@ namespace Viscoplastic
       return result;
     }
 
-    /// The strain of these values from the gradients of shape functions, and
-    /// hoop strains or null, at the vertices; zz of the whole section.
+    /// Return the strain of nodal values from vertex gradients of shape
+    /// functions, vertex hoop strains or null, and the uniform strain zz.
     static SymmetricTensor<2, 3>
     strain_at(const NodalValues    &values,
               const Tensor<1, dim> *gradient,
@@ -182,11 +182,11 @@ namespace Viscoplastic
     }
 
     std::vector<unsigned int> nodes; // n_vertices a cell
-    /// Of shapes of cells: 1 each, then at their samples n_vertices each, ...
+    /// By shape of cells: the volume, and vertex gradients at the samples.
     std::vector<double>         volumes;
     std::vector<Tensor<1, dim>> gradients;
-    /// ... the hoop strain of u_r = 1 at each vertex, likewise; empty unless
-    /// the body is one of revolution; and 1 each, positions from vertex 0.
+    /// Likewise, hoop strains of u_r = 1 at the vertices, empty unless the body
+    /// is one of revolution; by sample, weights and positions from vertex 0.
     std::vector<double>         hoops, weights;
     std::vector<Tensor<1, dim>> positions;
     /// Means of gradients and hoop strains, n_vertices each.
@@ -195,7 +195,7 @@ namespace Viscoplastic
   };
 
 
-  /// (z, eps(v)), a vector in frames. Collective.
+  /// Return (z, eps(v)), a vector in frames. Collective.
   template <int dim>
   DistributedVector
   irreversible_forces(const StressSpace<dim>   &stress_space,

@@ -20,30 +20,30 @@ namespace Viscoplastic
     /// The dual displacement w, in nodal frames (owned entries), and in
     /// Cartesian components with ghosts.
     DistributedVector w, cartesian;
-    /// What holds w on Gamma_3: nodal forces on the face, empty without contact
-    /// points, and their density with that of what holds bodies to each other,
-    /// Cartesian with ghosts.
+    /// The constraint forces of w on Gamma_3: nodal forces, empty without
+    /// contact points; and, Cartesian with ghosts, the nodal density of these
+    /// and of the forces between glued bodies.
     Vector<double>    force;
     DistributedVector density;
-    /// The traction that loads w in the place of a force at a point of the
-    /// boundary: equal for u_h but for h^2; empty if it has no such load.
+    /// The traction, equivalent for u_h up to h^2, that replaces the point
+    /// force loading w at the boundary; null without such a load.
     const DistributedVector *load = nullptr;
     /// a(w, w)^{1/2}.
     double norm = 0.;
-    /// What holds w where the face sticks, and turns with its slip; empty
-    /// without a face.
+    /// The constraints of w at sticking points and the springs at slipping
+    /// ones; empty without a face.
     FaceTruncation truncation;
   };
 
 
-  /// The dual problem of a quantity J: how J feels a residual R of the
-  /// equations of a step,
+  /// The dual problem of a quantity J, which gives the change of J due to a
+  /// residual R of the equations of a step,
   ///
   ///     a(u, v) + (z, eps(v)) + sum_c lambda_c . v_c = L(v) + R(v),
   ///
-  /// with the law of friction linearized at a state: points that stick do so,
-  /// and the multiplier of a point that slips changes with the direction of its
-  /// slip only, d(lambda) = K d(s) with K = rho/|s| across the slip (none in
+  /// with the friction law linearized at a state: sticking points stay stuck,
+  /// and the multiplier of a slipping point changes with the direction of its
+  /// slip only, d(lambda) = K d(s) with K = rho/|s| across the slip (zero in
   /// the plane). The change of J is then
   ///
   ///     J' = sign R(w),   a(w, v) + sum_slipping K w_c . v_c = l(v)
@@ -53,45 +53,44 @@ namespace Viscoplastic
   /// - of the displacement of a point, l is its component: sign = 1;
   /// - of a reaction, l = 0, and w is the unit direction on the boundary
   ///   instead of zero: sign = -1;
-  /// - of the friction force, l = 0, w is the unit direction at points that
-  ///   stick, and w_c less this direction takes the place of w_c at those that
-  ///   slip: sign = 1;
+  /// - of the friction force, l = 0, w is the unit direction at sticking
+  ///   points, and w_c minus this direction takes the place of w_c at slipping
+  ///   ones: sign = 1;
   /// - of the contact force likewise, along the normals where contact is
-  ///   closed, with K the slope of the pressure where a foundation gives way:
-  ///   sign = 1; of both on one boundary, times the part of a point's area that
-  ///   is there;
-  /// - of the work of friction in all steps, as long as what slips goes on in
-  ///   the same direction, l(v) = sum_slipping lambda_c . v_c; where the
-  ///   pressure of the step itself makes bounds, w is along the normals what it
-  ///   is of a contact force, but with mu times the slip up to now as the
-  ///   factor of each pressure: sign = 1.
+  ///   closed, with K the slope of the pressure of a compliant foundation: sign
+  ///   = 1; for friction or contact of one boundary, times the share of a
+  ///   point's area on that boundary;
+  /// - of the work of friction in all steps, while slip keeps its direction,
+  ///   l(v) = sum_slipping lambda_c . v_c; if bounds follow the pressure of the
+  ///   step itself, w along the normals is that of a contact force with each
+  ///   pressure weighted by mu times the slip up to now: sign = 1.
   ///
-  /// With Coulomb's law of the step's own pressure, lambda_c of a slipping
-  /// point changes with its pressure, too, and the equations of such a point
-  /// are those of its tilt (CoulombLaw::tilt()). The dual system is the
-  /// transposed one: v still is zero across the foundation there, but w moves
-  /// into it by mu times its part along the slip.
+  /// With Coulomb's law for the pressure of the step itself, lambda_c of a
+  /// slipping point also changes with its pressure, and its equations are those
+  /// of CoulombLaw::tilt(). The dual system is the transposed one: v is still
+  /// zero normal to the foundation there, but w has a normal component of mu
+  /// times its component along the slip.
   template <int dim>
   class DualProblem
   {
   public:
-    /// Both stay in use. Collective.
+    /// Keeps references to both. Collective.
     DualProblem(const Discretization<dim> &discretization,
                 const QuantityOfInterest  &quantity);
 
-    /// J of a state; the work of friction is that of its step alone.
+    /// Return J of a state; for the work of friction, that of its step alone.
     /// Collective.
     double
     value(const State<dim> &state, const Forces<dim> &forces) const;
 
-    /// The size of the forces that a force J adds up, of which rounding leaves
-    /// something where they cancel; zero of other quantities. Collective.
+    /// Return the sum of absolute nodal forces of a force J, of which a small J
+    /// is rounding; zero for other quantities. Collective.
     double
     size_of_parts(const State<dim> &state, const Forces<dim> &forces) const;
 
-    /// Solve with a solver for the matrix of a(.,.), with the law of bounds
-    /// that follow the pressure of the step itself, if they do. Zero for the
-    /// work of friction where nothing slips. Collective. Throws ExcMessage.
+    /// Solve with a solver for the matrix of a(.,.). @p law: if bounds follow
+    /// the pressure of the step itself. Zero for the work of friction if
+    /// nothing slips. Collective. Throws ExcMessage.
     DualSolution<dim>
     solve(BulkSolver         &solver,
           const ContactState &contact,
@@ -102,12 +101,11 @@ namespace Viscoplastic
       return dual;
     }
 
-    /// Make @p dual the solution of a state, with any @p matrix in the place of
-    /// that of a(.,.), unless it is one with this matrix already for which all
-    /// points stick, or slip in the same directions and with the same springs.
-    /// (What loads the work of friction is never the same: what slips has done
-    /// so for @p slip_steps steps like this one.) Returns whether it is another
-    /// one now. Collective. Throws ExcMessage.
+    /// Set @p dual to the solution at a state, with @p matrix in place of that
+    /// of a(.,.), and return true; return false and keep it if it is one for
+    /// this matrix with the same sticking points, slip directions and springs.
+    /// For the work of friction, whose load always changes, slip has lasted for
+    /// @p slip_steps steps like this one. Collective. Throws ExcMessage.
     bool
     renew(BulkSolver              &solver,
           const DistributedMatrix &matrix,
@@ -116,15 +114,16 @@ namespace Viscoplastic
           double                   slip_steps,
           DualSolution<dim>       &dual) const;
 
-    /// The solution that renew() has made, of its w, here with ghosts, and its
+    /// Rebuild the solution of renew() from its w, here with ghosts, and its
     /// truncation. Collective.
     DualSolution<dim>
     restore(const DistributedVector &ghosted_w,
             const FaceTruncation    &truncation,
             const DistributedMatrix &matrix) const;
 
-    /// The problem whose dual this is, a(u, v) = load . v at a state: of errors
-    /// of z, those of u. @p u, in frames, brings where points stick that do.
+    /// Solve the linearized primal problem at a state, a(u, v) = load . v: with
+    /// the load of errors of z, u is their effect on the displacement. On input
+    /// @p u, in frames, holds the values at sticking points, which stay.
     /// Collective. Throws ExcMessage.
     void
     solve_linearized(BulkSolver              &solver,
@@ -139,61 +138,60 @@ namespace Viscoplastic
       return quantity.is_reaction() ? -1. : 1.;
     }
 
-    /// Whether a piece that J is the force of meets another one that holds the
-    /// same direction.
+    /// Whether another boundary holds nodes of that of J in the same direction.
     bool
     pieces_meet() const
     {
       return n_meetings > 0;
     }
 
-    /// Add to the parts of an error sign J(u) - sign J(u_h), by active cell,
-    /// what pieces that meet hold of each other. The force at a node where two
-    /// of them hold the same direction goes to one, which has the other's
-    /// traction there, too: int sigma_h nu . w on the pieces that hold w, and
-    /// what is missing of w on its own.
+    /// Add to the parts, by active cell, of an error sign J(u) - sign J(u_h)
+    /// the contribution of nodes where two boundaries hold the same direction.
+    /// The force at such a node is assigned to one of them, although the other
+    /// one's traction is part of it: add int sigma_h nu . w on other boundaries
+    /// that hold w, and what w lacks on its own.
     void
     add_at_meetings(const State<dim> &state, Vector<double> &parts) const;
 
   private:
-    /// Spread the force at a point, by relevant entries, over the faces of the
-    /// boundary around its nodes. Collective.
+    /// Set load_density to the point force @p force, by relevant dofs, spread
+    /// over the boundary faces around its nodes. Collective.
     void
     make_load_density(const std::vector<double> &force);
 
     void
     find_meetings();
 
-    /// l, in frames.
+    /// Return l, in frames.
     DistributedVector
     right_side(const ContactState &contact) const;
 
-    /// The prescribed values of w, in frames.
+    /// Return the prescribed values of w, in frames.
     DistributedVector
     prescribed() const;
 
-    /// Those of the work of friction: what a pressure has been worth in so many
-    /// steps.
+    /// Set the prescribed values of w for the work of friction: the work per
+    /// unit of each pressure in @p slip_steps steps.
     void
     prescribe_work_of_pressure(const ContactState &contact,
                                const CoulombLaw   &law,
                                double              slip_steps,
                                DistributedVector  &w) const;
 
-    /// What holds w at a state; or u, if not @p transposed.
+    /// Return the constraints and springs of w, or of u if not @p transposed.
     FaceTruncation
     truncation(const BulkSolver   &solver,
                const ContactState &contact,
                const CoulombLaw   *law,
                const bool          transposed) const;
 
-    /// Set what follows from w, which @p load has loaded.
+    /// Set the other members of @p dual from its w, the solution for @p load.
     void
     complete(const DistributedMatrix &matrix,
              const DistributedVector &load,
              DualSolution<dim>       &dual) const;
 
-    /// The nodal density of -a(w, .) on the face.
+    /// Return the nodal density of a nodal force on the face.
     DistributedVector
     density(const Vector<double> &force) const;
 
@@ -203,7 +201,7 @@ namespace Viscoplastic
     DistributedVector              point_load; // l of a displacement
     /// Its nodal density on the boundary, Cartesian with ghosts.
     DistributedVector load_density;
-    /// int sym(w nu) of what pieces hold of each other's w, by owned cell.
+    /// int sym(w nu) of what add_at_meetings() adds, by owned cell.
     std::map<std::size_t, SymmetricTensor<2, 3>> meetings;
     std::size_t                                  n_meetings = 0; // on all ranks
   };

@@ -7,7 +7,7 @@
 
 namespace Viscoplastic
 {
-  /// What becomes of errors of z in a step, cell by cell.
+  /// Computes by which factors errors of z decay in a step, cell by cell.
   template <int dim>
   class ErrorDecay
   {
@@ -25,8 +25,9 @@ namespace Viscoplastic
     void
     enter(const std::size_t c);
 
-    /// What stress at a given strain leaves of its error, at sample @p i, one
-    /// of this cell. State and point count where it asks_for_stress.
+    /// Return the map from a stress error before the step to that after it, at
+    /// fixed strain, for sample @p i of the present cell. The other arguments
+    /// are used only if asks_for_stress.
     const ErrorRelaxation &
     relaxation_at(const std::size_t            i,
                   const SymmetricTensor<2, 3> &stress,
@@ -38,12 +39,11 @@ namespace Viscoplastic
     const double                         k;
     const FlowRate                      &rate;
 
-    // Of the cell:
+    // Data of the present cell:
     const ViscoplasticLaw               *law       = nullptr;
     const Stiffness                     *stiffness = nullptr;
     std::optional<SymmetricTensor<4, 3>> growth;
-    /// What is left of an error that makes no stress, where it grows() with
-    /// the strain.
+    /// (1 + growth)^-1, the decay of errors of z that make no stress.
     SymmetricTensor<4, 3> fading;
     bool                  asks_for_stress = false;
 
@@ -55,8 +55,8 @@ namespace Viscoplastic
 
 
 
-  /// Let the carried error of z at the end of a step relax, with the carried
-  /// error of u that it makes. Collective.
+  /// Relax State::carried_error at the end of a step, given the error of u that
+  /// it makes, State::carried_error_of_u. Collective.
   template <int dim>
   void
   relax_carried_error(const FlowLaws<dim> &laws,

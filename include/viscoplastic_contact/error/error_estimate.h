@@ -30,9 +30,9 @@ namespace Viscoplastic
     /// The error of the initial data.
     double initial = 0.;
 
-    /// Whether the history adds to the error of the mesh, as with cell means:
-    /// runs to a tolerance were above it without that. What is left of former
-    /// meshes alone is orthogonal to what the present one cannot resolve.
+    /// Whether the history error adds to the mesh error linearly, as with cell
+    /// means, and not by squares: the error that former meshes have left is
+    /// orthogonal to what the present mesh cannot resolve.
     bool history_adds = false;
 
     /// The error of the present mesh and of former ones together.
@@ -71,19 +71,18 @@ namespace Viscoplastic
     /// If the quantity is a sum over the steps: the parts of both corrections
     /// that later steps can no longer change.
     double settled_space = 0., settled_time = 0.;
-    /// The work of friction of what slips, under its present bounds, since it
-    /// has begun to; and over that of the last step.
+    /// The work of friction, under present bounds, of all slip of points that
+    /// slip now; and its ratio to that of the last step.
     double slip_work = 0., slip_steps = 1.;
-    /// The settled part of a force as it was when points came to rest; since
-    /// then stress has relaxed.
+    /// The settled error of a force before relaxation, as of the time when
+    /// points came to rest.
     double rest_space = 0.;
-    /// The sum of what the cells contribute to the error of the mesh, without
-    /// signs.
+    /// The sum of absolute contributions of cells to the error of the mesh.
     double unsigned_space = 0.;
-    /// A share of it that counts at least, as signs may cancel by chance.
+    /// The least mesh error that counts, as signs may cancel by chance.
     double space_at_least = 0.;
-    /// The part of the present error of the mesh that is of straight sides, and
-    /// what has no sign of the boundary (BoundaryDefects).
+    /// The part of the present mesh error due to straight sides of curved
+    /// bodies, and the unsigned errors at the boundary (BoundaryDefects).
     double of_sides = 0., of_boundary = 0.;
     /// Errors of slip that turns and of slip that comes to rest within steps
     /// (SlipDefects), summed over the steps.
@@ -120,13 +119,12 @@ namespace Viscoplastic
     double swing = 0., swing_share = 0.;
     /// The increment of `time' in the last step.
     double time_indicator = 0.;
-    /// The part of that increment that does not relax and stays in a force as
-    /// quantity of interest.
+    /// The part of that increment that does not relax in a force J.
     double remembered_indicator = 0.;
-    /// What the last step has left of the errors of a force before it, as far
-    /// as they relax at constant strain.
+    /// The share of earlier errors of a force that the last step leaves, by
+    /// relaxation at constant strain.
     double remembered_share = 1.;
-    /// And what stress has regained of it, since the law holds the strain.
+    /// The share of them that stress regains as the law resists strain.
     double remembered_gain = 0.;
     /// slip_begun() of the last step.
     double slip_begun = 0.;
@@ -140,15 +138,15 @@ namespace Viscoplastic
     /// (int E^-1 dz : dz)^{1/2} of the change of z in the step; with viscosity
     /// only.
     double irreversible_change = 0.;
-    /// The sum of k |G| of all steps, in the same norm; and the time in which
-    /// the last |G| alone makes that.
+    /// The sum of k |G| over all steps, in the same norm; and the time in which
+    /// the last |G| alone makes that sum.
     double creep_path = 0., creep_time = 0.;
-    /// How far the steps since the space estimate was made have moved the
-    /// state, relative to it, see TimeStepper::growth_since_estimate().
+    /// The change of the state, relative to its size, since the space estimate
+    /// was made, see TimeStepper::growth_since_estimate().
     double since_estimate = 0.;
 
-    /// Write to, or read from, an archive; but for what is of step control
-    /// alone, which each step makes anew.
+    /// Write to, or read from, an archive all but the members for step control,
+    /// which each step sets anew.
     template <typename Archive>
     void
     exchange(Archive &archive)

@@ -10,20 +10,20 @@
 
 namespace Viscoplastic
 {
-  /// What a scheme for z' = G leaves out of the integral of G over a step, to
-  /// leading order:
+  /// The leading order of the defect of a scheme for z' = G, the integral of G
+  /// over a step minus its approximation:
   ///
   ///     first k_n (G_n - G_{n-1}) + second k_n^3 G''.
   ///
-  /// Schemes of first order have first != 0 and need no more, but for long
-  /// steps of backward Euler under laws that are not linear, whose integral of
-  /// G is Simpson's. Those of second order have first = 0.
+  /// Schemes of first order have first != 0 and need no second, except for long
+  /// steps of backward Euler under nonlinear laws, where the integral of G is
+  /// Simpson's. Those of second order have first = 0.
   struct TimeDefect
   {
     double first, second;
   };
 
-  /// The defect of a scheme.
+  /// Return the defect of a scheme.
   TimeDefect
   time_defect(const TimeScheme scheme);
 
@@ -31,34 +31,34 @@ namespace Viscoplastic
 
   /// Estimates the error of each state in the energy norm, by its causes, in
   /// scenes with `Error control/Error bar': the mesh, the time steps, the
-  /// iterations, the initial data. It keeps nothing of the run; what has added
-  /// up is in the states.
+  /// iterations, the initial data. It keeps nothing of the run; sums over steps
+  /// are stored in the states.
   ///
-  /// Time: z_n lacks the sum of the defects of all steps. Signed, as tensors at
-  /// the samples, they add up to D_n, e.g. for forward Euler
-  /// D_n = D_{n-1} + (k_n/2)(G_n - G_{n-1}), and cancel where G returns. Since
-  /// a(e_u, v) = -(e_z, eps(v)), the norm (int E^-1 D : D)^{1/2} bounds their
-  /// effect on u. That errors of z relax, too, is left out: where the stress
-  /// follows from the loads it does not happen. In linear laws that depend on
-  /// the strain, what makes no stress fades all the same. What quantities of
-  /// interest feel is carried on beside D, with the error of u that it makes
-  /// (QuantityEstimator::carry_time_error()). History variables have such a sum
-  /// of their own; what becomes of it in a step, and what it does to G
-  /// meanwhile, is the difference of two steps at the same stress.
+  /// Time: the error of z_n is the sum of the defects of all steps. Signed, as
+  /// tensors at the samples, they add up to D_n, e.g. for forward Euler D_n =
+  /// D_{n-1} + (k_n/2)(G_n - G_{n-1}), and cancel if G returns to a value.
+  /// Since a(e_u, v) = -(e_z, eps(v)), the norm (int E^-1 D : D)^{1/2} bounds
+  /// their effect on u. The relaxation of errors of z is neglected: it does not
+  /// occur where loads determine the stress. In linear laws that depend on the
+  /// strain, errors of z that make no stress fade nevertheless. For quantities
+  /// of interest a second error of z, which relaxes, is carried beside D with
+  /// the error of u that it makes (QuantityEstimator::carry_time_error()).
+  /// History variables have their own sum of defects; its evolution in a step,
+  /// and its effect on G, is the difference of two steps at the same stress.
   ///
   /// Friction: slip that turns in a step has the direction of its end. In an
-  /// elastic body the error of what is linear between the steps satisfies
-  /// a(e, e) <= sum over the steps of rho |s| - lambda . s, with s the slip of
-  /// a step and lambda the multiplier at its beginning. Of this sum only what
-  /// comes from turning counts (see turning_work()): the slip of a point that
-  /// has been at rest, or keeps its direction, is exact at the end of the step.
+  /// elastic body under loads linear in each step, the error satisfies a(e, e)
+  /// <= sum over the steps of rho |s| - lambda . s, with s the slip of a step
+  /// and lambda the multiplier at its beginning. Only the part of this sum due
+  /// to turning counts (see turning_work()): the slip of a point that has been
+  /// at rest, or keeps its direction, is exact at the end of the step.
   ///
-  /// Bounds that follow the pressure or the slip rate of the step before: with
-  /// bounds that miss Delta rho, (a(e, e)/2)' <= sum Delta rho |s'|, which adds
-  /// up.
+  /// Bounds that follow the pressure or the slip rate of the step before: for
+  /// an error Delta rho of the bounds, (a(e, e)/2)' <= sum Delta rho |s'|,
+  /// which is summed over the steps.
   ///
-  /// Changes of the mesh: what they take from z adds up. So does what cell
-  /// means leave out of G.
+  /// Changes of the mesh: the norms of the losses of z are summed. So are the
+  /// defects of G at cell means.
   template <int dim>
   class ErrorEstimator
   {
@@ -72,13 +72,13 @@ namespace Viscoplastic
 
     explicit ErrorEstimator(const Scene<dim> &scene);
 
-    /// Which of the sample_fields() of a state the scene has.
+    /// Return which of the sample_fields() of a state the scene has.
     static std::array<bool, 7>
     has_sample_fields(const Scene<dim> &scene);
 
-    /// Set the fields of time errors and the estimate of a state that the
-    /// projections of the initial data have made. Returns the squares that
-    /// active cells contribute to the error of the initial data. Collective.
+    /// Initialize the fields of time errors, and the estimate of a state that
+    /// holds projections of the initial data. Returns the squared errors of the
+    /// initial data by active cell. Collective.
     Vector<double>
     begin(const StressSpace<dim> &stress_space,
           EvaluatedState<dim>    &initial) const;
@@ -89,9 +89,9 @@ namespace Viscoplastic
     assess_equilibrium(const ContactReport &report,
                        EvaluatedState<dim> &initial) const;
 
-    /// Renew what depends on the mesh in the estimate of a state that has moved
-    /// to a new one. @p memory_loss: what z has lost in it; @p history: what
-    /// refined cells leave in z, squared. Collective.
+    /// Update the mesh-dependent part of the estimate of a state that has been
+    /// transferred to a new mesh. @p memory_loss: norm of the loss of z; @p
+    /// history: squared error that refined cells leave in z. Collective.
     void
     change_mesh(const AdmissibleSpace<dim> &space,
                 const DistributedMatrix    &matrix,
@@ -99,19 +99,20 @@ namespace Viscoplastic
                 const double                history,
                 EvaluatedState<dim>        &accepted) const;
 
-    /// The relative tolerance for the iterations of the next step: `Algebraic
-    /// fraction' of the estimated discretization error of the accepted state,
-    /// or a fixed one if the scene gives it or nothing is known yet.
+    /// Return the relative tolerance for the iterations of the next step:
+    /// `Algebraic fraction' of the estimated discretization error of the
+    /// accepted state, or a fixed one if the scene gives it or no estimate
+    /// exists.
     double
     tolerance(const ErrorEstimate &accepted) const;
 
-    /// Set the fields of time errors of the end of a step, and the estimate but
-    /// for assess_space(). Its forces, and with viscosity the rates of both
-    /// states, have been evaluated. @p defect: of the scheme of the step. @p
-    /// slip_defects, @p slip_begun: of the step, if any; @p missed_work: that
-    /// of friction bounds which it has missed (ContactFace::missed_bounds());
-    /// @p swing: the swing_of_data() of the step. @p is_fresh: at its beginning
-    /// data have a kink, so that G may have one, too. Collective.
+    /// Set the fields of time errors at the end of a step, and the estimate
+    /// except for assess_space(). Forces, and with viscosity the rates of both
+    /// states, must be known. @p defect: of the scheme. @p slip_defects, @p
+    /// slip_begun: of the step, if any; @p missed_work: by the error of
+    /// friction bounds in it (ContactFace::missed_bounds()); @p swing:
+    /// swing_of_data() of the step. @p is_fresh: whether data, and so G, may
+    /// have a kink at its beginning. Collective.
     void
     assess(const FlowLaws<dim>       &laws,
            const TimeDefect          &defect,
@@ -125,16 +126,15 @@ namespace Viscoplastic
            const FlowRate            *accepted_rate,
            EvaluatedState<dim>       &end) const;
 
-    /// Take what is of the mesh in the estimate of the end of a step from its
-    /// space estimate.
+    /// Set the mesh part of the estimate of a step from its space estimate.
     void
     assess_space(const ErrorEstimate &before, EvaluatedState<dim> &end) const;
 
   private:
-    /// Add the defect of a step to the field of time errors, and put the norms
-    /// into the estimate. @p has_slope: whether the slope of G before the step
-    /// goes on in it. @p onset: how many times the bend of G after the step
-    /// before counts, in which slip has begun. Collective.
+    /// Add the defect of a step to the field of time errors, and set the norms
+    /// in the estimate. @p has_slope: whether the slope of G before the step
+    /// continues in it. @p onset: the factor of the change of slope after the
+    /// step before, if slip has begun in that one. Collective.
     void
     add_defect(const FlowLaws<dim>       &laws,
                const TimeDefect          &defect,

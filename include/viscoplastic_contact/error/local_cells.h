@@ -10,7 +10,7 @@
 
 namespace Viscoplastic
 {
-  /// The components of stress @p normal in the plane of the section, in 3D all.
+  /// Return the components of stress @p normal in the section, in 3D all.
   template <int dim>
   Tensor<1, dim>
   in_plane(const SymmetricTensor<2, 3> &stress, const Tensor<1, dim> &normal)
@@ -24,10 +24,10 @@ namespace Viscoplastic
 
 
 
-  /// What estimators of the error in space need of a mesh: the shape functions
-  /// of V_h in all cells of this rank and its ghosts. Cells that differ by a
-  /// translation share them, in bodies of revolution by one along the axis, so
-  /// that a step evaluates no finite elements.
+  /// The geometry that spatial error estimators use: shape functions of V_h in
+  /// all owned and ghost cells of this rank. Cells that differ by a translation
+  /// share them, in bodies of revolution by one along the axis, so that a step
+  /// evaluates no finite elements.
   template <int dim>
   class LocalCells
   {
@@ -39,14 +39,13 @@ namespace Viscoplastic
     using Gradients    = std::array<Tensor<1, dim>, n_vertices>;
     using CellIterator = typename DoFHandler<dim>::active_cell_iterator;
 
-    /// The values of a field at the vertices, and its strain zz if that is one
-    /// for the whole section.
+    /// Vertex values of a field, and its strain zz if uniform in the section.
     struct NodalValues : std::array<Tensor<1, dim>, n_vertices>
     {
       double axial_strain = 0.;
     };
 
-    /// The gradient of a field with these values at the vertices.
+    /// Return the gradient of a field with these values at the vertices.
     static Tensor<2, dim>
     gradient(const NodalValues &values, const Gradients &shape_gradients)
     {
@@ -57,10 +56,10 @@ namespace Viscoplastic
       return result;
     }
 
-    /// u_r/r of u_r = 1 at each vertex; zero but in bodies of revolution.
+    /// u_r/r of u_r = 1 at each vertex; zero except in bodies of revolution.
     using Hoops = std::array<double, n_vertices>;
 
-    /// The strain zz of a field with these values: u_r/r in rings.
+    /// Return the strain zz of a field with these values: u_r/r in rings.
     double
     strain_zz(const NodalValues &values, const Hoops &hoops) const
     {
@@ -103,17 +102,16 @@ namespace Viscoplastic
     {
       unsigned int             shape, active_index;
       types::global_cell_index global_active_index;
-      /// Places of the vertices' degrees of freedom in ghosted vectors, of the
-      /// first component.
+      /// Local indices of the vertices' first components in ghosted vectors.
       std::array<unsigned int, n_vertices> nodes;
       Stiffness                            stiffness;
       Point<dim>                           origin; // vertex 0
       types::material_id                   material_id;
-      /// Whether it is part of the body in the present stage.
+      /// Whether the cell is part of the body in the present stage.
       bool is_present;
     };
 
-    /// The argument stays in use.
+    /// Keeps a reference to @p stress_space.
     explicit LocalCells(const StressSpace<dim> &stress_space);
 
     const StressSpace<dim> &stress_space;
@@ -123,30 +121,30 @@ namespace Viscoplastic
     /// The owned cells first, in the order of the stress space, then ghosts.
     std::vector<LocalCell> cells;
 
-    /// u at the vertices of a cell; @p u: local array of a ghosted vector.
+    /// Return u at a cell's vertices; @p u: local array of a ghosted vector.
     NodalValues
     displacements(const LocalCell &cell, const double *u) const;
 
-    /// The mean strain of a field in a cell.
+    /// Return the mean strain of a field in a cell.
     SymmetricTensor<2, 3>
     mean_strain(const LocalCell &cell, const NodalValues &displacements) const;
 
-    /// The strains that act in the elastic form, at the points of a cell: those
-    /// of u_h, under mean dilatation with the volumetric part of their mean.
-    /// If asked for, also what the @p dilatations of u_h have beyond that, zero
-    /// otherwise.
+    /// Return the strains of the elastic form at the points of a cell: those of
+    /// u_h, under mean dilatation with their mean volumetric part. Set @p
+    /// dilatations, if given, to the deviation of div u_h from its mean under
+    /// mean dilatation, otherwise to zero.
     std::array<SymmetricTensor<2, 3>, n_points>
     strains(const LocalCell   &cell,
             const NodalValues &displacements,
             double            *dilatations = nullptr) const;
 
-    /// Cell means of z in owned cells and ghosts, kept in @p means if z is not
-    /// them itself; null without z. Collective.
+    /// Return cell means of z in owned cells and ghosts, stored in @p means
+    /// unless z itself holds them; null without z. Collective.
     const SymmetricTensor<2, 3> *
     mean_irreversible_stress(const IrreversibleStress &z,
                              IrreversibleStress       &means) const;
 
-    /// Values of the owned cells by active cell index.
+    /// Return values of the owned cells by active cell index.
     Vector<double>
     by_active_index(const std::vector<double> &by_cell) const;
 

@@ -11,33 +11,33 @@
 
 namespace Viscoplastic
 {
-  /// The estimate of Zienkiewicz and Zhu: how far the strain eps_h of u_h is
-  /// from a continuous one, eps*, whose values at the nodes are means of the
-  /// cells around them, weighted by 1/width (materials apart),
+  /// The estimate of Zienkiewicz and Zhu: the distance of the strain eps_h of
+  /// u_h from a continuous one, eps*, whose nodal values are means over the
+  /// cells of a material around the node, weighted by 1/width,
   ///
   ///     eta_K^2 = int_K (eps* - eps_h) : E (eps* - eps_h).
   ///
-  /// In a body that creeps the strain holds, other than the stress, what all
-  /// steps have left out: it grows with the error of the rates. No bound, and
-  /// blind to what goes on in the law of friction; but without a constant, and
-  /// exact in the limit where solutions are smooth and meshes regular. Cells of
-  /// absent materials count for nothing.
+  /// In a body that creeps, the strain, unlike the stress, contains the sum of
+  /// the defects of all steps: it grows with the error of the rates. The
+  /// estimate is no bound and does not see errors of friction; but it needs no
+  /// constant and is exact in the limit of smooth solutions on regular meshes.
+  /// Cells of absent materials do not count.
   ///
-  /// At singular points means around nodes miss most of it: of strains like
-  /// r^(beta), beta > -dim/2, the scales below the cell hold a part that has no
-  /// bound as beta tends to -dim/2, as it does at the corners of bodies that
-  /// creep by a power law. A self-similar strain tells it. What it varies by
-  /// between the cells of a patch twice as large as the cell K at its singular
-  /// corner, D, and the errors S of the others there, return within K at each
-  /// scale times the share q that K has of the energy of means in the patch:
+  /// At singular points, nodal means miss most of the error: of strains like
+  /// r^beta, beta > -dim/2, the scales below the cell contain a part that is
+  /// unbounded as beta tends to -dim/2, as at corners in power-law creep. It
+  /// follows from self-similarity. In the patch of cells twice as large as the
+  /// cell K at its singular corner, let D be the variation between cell means
+  /// and S the sum of the other cells' errors. Both return within K at each
+  /// smaller scale times the share q of K in the energy of the patch's means:
   ///
   ///     eta_K^2 = (q + q^2 + ...) (D + S),   q = 2^(-2 beta - dim).
   template <int dim>
   class RecoveryEstimator
   {
   public:
-    /// What multiply() takes of a dual solution and the tangents C, at the
-    /// points of owned cells, one cell after another.
+    /// The data of a dual solution and the tangents C that multiply() uses, at
+    /// the points of owned cells, one cell after another.
     struct OfDual
     {
       /// C e_w.
@@ -47,19 +47,19 @@ namespace Viscoplastic
       std::vector<SymmetricTensor<2, 3>> of_dilatation;
       /// E^-1 C eps(w_h); empty if the law is linear.
       std::vector<SymmetricTensor<2, 3>> strain;
-      /// By part: the ends at which eps* of w_h is curved, and those from which
-      /// neither strain is extrapolated.
+      /// By part: the boundary vertices (`ends') at which eps* of w_h is
+      /// curved, and those at which neither strain is extrapolated.
       std::vector<std::vector<bool>> curved, left;
     };
 
-    /// The state of a creeping body, linearized as one step of backward Euler.
+    /// A creeping body, linearized as one step of backward Euler.
     struct Linearization
     {
-      /// The size of the step as a part of the time that the body has crept,
-      /// and so that of its deviatoric strains. At most 1.
+      /// The ratio of the step to the creep time, and so of its deviatoric
+      /// strain to that of the body. At most 1.
       double share;
-      /// E r, which a stress error C e at a sample of a cell is beyond E e and
-      /// what flows; empty if the law is linear.
+      /// E r, the difference of a stress error C e at a sample of a cell and E
+      /// e plus the flow due to it; empty if the law is linear.
       std::function<SymmetricTensor<2, 3>(const std::size_t            cell,
                                           const unsigned int           sample,
                                           const SymmetricTensor<2, 3> &strain,
@@ -67,46 +67,46 @@ namespace Viscoplastic
         remainder;
     };
 
-    /// The argument stays in use. Collective.
+    /// Keeps a reference to @p cells. Collective.
     explicit RecoveryEstimator(const LocalCells<dim> &cells);
 
-    /// eta_K^2 by active cell, zero in cells of other ranks; @p u with ghosts,
-    /// Cartesian. If asked for, also the sum of what deviators alone make of it
-    /// (without singular points). Collective.
+    /// Return eta_K^2 by active cell, zero in cells of other ranks; @p u with
+    /// ghosts, Cartesian. Set @p deviatoric, if given, to the sum for strain
+    /// deviators alone, without singular points. Collective.
     Vector<double>
     estimate(const DistributedVector &u, double *deviatoric = nullptr) const;
 
-    /// a(e_u, e_w) by active cell in the form of the tangents C, of the strain
-    /// errors of a displacement and a dual solution @p w with their signs;
-    /// @p tangents are by sample, or null for those of elasticity, other
-    /// arguments and the result as of estimate(). What is taken of w is kept in
-    /// @p dual, empty at first.
+    /// Return the signed products a(e_u, e_w) by active cell, in the form of
+    /// the tangents C, of the strain errors of a displacement and a dual
+    /// solution @p w. @p tangents: by sample, or null for elasticity; other
+    /// arguments and the result as of estimate(). Data of w are kept in @p
+    /// dual, initially empty.
     ///
     ///     int e_u : C e_w - int r(-e_u) : C eps(w_h)
     ///
-    /// since u_h solves the equations of the law and not those of its tangents:
-    /// its error is a-orthogonal to w_h but for the remainder r of the law,
-    /// which is of the order of the first term. It is that of the way back,
-    /// with tangents at the solution u, not at u_h: they are smooth, and so is
-    /// the w that eps* of w_h is close to. What tangents of another state miss
-    /// is in it, too.
+    /// Since u_h solves the nonlinear equations instead of their linearization,
+    /// its error is a-orthogonal to w_h only up to the remainder r of the law,
+    /// which is of the order of the first term. r is taken from u to u_h, with
+    /// tangents at u rather than u_h: they are smooth, and so is the w that
+    /// eps* of w_h approximates. r also contains the difference to tangents at
+    /// another state.
     ///
-    /// Signs leave little of the sum, so that two things count here that do not
-    /// in squares. Means at a boundary miss half of what a strain varies by in
-    /// a cell: eps* is extrapolated there, so that linear strains on boxes are
-    /// met everywhere; but not from cells where both are is_curved(), as at the
-    /// corners of clamped boundaries, whose product it would take away. A plane
-    /// of symmetry is no boundary: strains go on beyond it, mirrored, and have
-    /// no shear along it (if materials are isotropic). And under mean
-    /// dilatation pressures do work on what div u_h and div w_h vary by in
-    /// cells, delta:
+    /// Since signed terms nearly cancel, two details matter here that do not
+    /// for squares. At a boundary, nodal means miss half of the variation in a
+    /// cell: eps* is extrapolated there, so that linear strains on boxes are
+    /// exact everywhere; but not if both strains are is_curved(), as at corners
+    /// of clamped boundaries, where this would remove the product. A plane of
+    /// symmetry is no boundary: strains are mirrored there and have no shear
+    /// along it (if materials are isotropic). And under mean dilatation
+    /// pressures do work on the variation delta of div u_h and div w_h in
+    /// cells:
     ///
     ///     - int (C e_u + z) : I delta_w/3 - int e_w : C I delta_u/3,
     ///
-    /// from the mixed form of displacement and pressure, which that method is:
-    /// the body feels what the pressure of z, as of heat, varies by in a cell
-    /// (if it does: @p z may be cell means, or empty), the equations do not.
-    /// What is recovered of the volume then is the pressure, K tr eps less that
+    /// from the equivalent mixed form of displacement and pressure: the exact
+    /// solution depends on the variation in a cell of the pressure of z, as by
+    /// heat, the discrete one does not (@p z may be cell means, or empty). The
+    /// recovered volumetric quantity is then the pressure, K tr eps minus that
     /// of z: where stress has relaxed it is small beside both. Collective.
     Vector<double>
     multiply(const DistributedVector                  &u,
@@ -119,7 +119,7 @@ namespace Viscoplastic
   private:
     static constexpr unsigned int n_vertices = LocalCells<dim>::n_vertices,
                                   n_points   = LocalCells<dim>::n_points;
-    /// By cell, owned or not.
+    /// By cell, including ghosts.
     using Strains     = std::vector<SymmetricTensor<2, 3>>;
     using NodalVector = LinearAlgebra::distributed::Vector<double>;
     using Cell        = typename LocalCells<dim>::LocalCell;
@@ -131,99 +131,94 @@ namespace Viscoplastic
       std::vector<std::pair<unsigned int, double>> parents;
     };
 
-    /// A material: its owned cells, and what recovery needs at their nodes.
+    /// The owned cells of a material, and data for recovery at their nodes.
     struct Part
     {
       std::vector<unsigned int> cells;
       double                    largest_share; // q of singular points
-      /// By node, of the cells around, each with the inverse of its width: so
-      /// linear strains are met also where cells of two sizes meet.
+      /// By node, the inverse of the sum of 1/width of the cells around it;
+      /// these weights are exact for linear strains between cells of two sizes.
       std::vector<double> inverse_weight;
-      /// Of those around a node at the boundary with a vertex inside opposite
-      /// to it.
+      /// The same for cells at a boundary node whose opposite vertex is inside.
       std::vector<double> inverse_inner_weight;
-      /// Those that have the material at all of their parents take what is
-      /// between them.
+      /// Hanging nodes with the material at all of their parents, from which
+      /// their values are interpolated.
       std::vector<HangingNode> hanging_nodes;
     };
 
-    /// Cells around a node, twice as large as one of them: the energy of their
-    /// mean strain, by volume and in all, what their means vary by around it,
-    /// and the sum of their eta_K^2.
+    /// The cells around a node, twice as large as one of them: the energy of
+    /// their mean strain, by volume and in all, the variation of their means
+    /// around it, and the sum of their eta_K^2.
     struct Patch
     {
       double density, energy, variation, error;
     };
 
-    /// That around the vertex of cell @p c opposite to @p vertex, from what is
-    /// recovered and summed; none where cells are not those of a regular mesh.
+    /// Return the patch around the vertex of cell @p c opposite to @p vertex,
+    /// from recovered values and sums; none where the mesh is not regular.
     std::optional<Patch>
     patch(const unsigned int c, const unsigned int vertex) const;
 
-    /// Whether strains go on from a cell at its vertex to the one across the
-    /// patch as they do at singular points: K + O - 2 P of the means in the
-    /// cell, across the patch and in it is zero for linear strains, and for
-    /// those that vary in one direction, as in bending or around holes. From
-    /// what is recovered at the node between them; no where cells are not
-    /// those of a regular mesh.
+    /// Whether strains at a vertex of a cell vary as at singular points: K + O
+    /// - 2 P, of the means in the cell, the opposite cell of the patch and the
+    /// patch, is zero for linear strains and those that vary in one direction,
+    /// as in bending or around holes. Uses values recovered at the node between
+    /// the cells; false where the mesh is not regular.
     bool
     is_curved(const unsigned int cell,
               const unsigned int vertex,
               const Strains     &means) const;
 
-    /// Raise eta_K^2 by index of cell at singular points.
+    /// Raise eta_K^2, by cell index, at singular points. Collective.
     void
     raise_at_singular_points(const Part          &part,
                              const Strains       &means,
                              std::vector<double> &squares) const;
 
-    /// Twice the energy of a strain, by volume.
+    /// Return eps : E eps, twice the energy density of a strain.
     double
     energy_density(const unsigned int           cell,
                    const SymmetricTensor<2, 3> &strain) const;
 
-    /// What is recovered at a node.
+    /// Return the recovered strain at a node.
     SymmetricTensor<2, 3>
     recovered(const unsigned int node) const;
 
-    /// Find the cells across vertices.
+    /// Set the member `across'.
     void
     find_across();
 
-    /// The vertex of a cell that is farthest from this one.
+    /// Return the vertex of a cell farthest from this one.
     static unsigned int
     opposite(const unsigned int vertex)
     {
       return n_vertices - 1 - vertex;
     }
 
-    /// Set the strains at the nodes of a part to means of its cells.
-    /// Collective.
+    /// Set the nodal strains of a part to means over its cells. Collective.
     void
     recover(const Part &part, const Strains &means) const;
 
-    /// Whether strains that have been recovered are curved, for all ends of a
-    /// part in turn.
+    /// Return is_curved() of recovered strains for all ends of a part in turn.
     std::vector<bool>
     curved_ends(const Part &part, const Strains &means) const;
 
-    /// Mirror recovered strains at planes of symmetry, and add to those at the
-    /// boundary what the cell means of eps* miss, but for ends that are left.
+    /// Mirror recovered strains at planes of symmetry, and add to boundary
+    /// values what the cell means of eps* miss, except at ends in @p is_left.
     /// Collective.
     void
     extrapolate(const Part              &part,
                 const Strains           &means,
                 const std::vector<bool> &is_left) const;
 
-    /// Set what is taken of @p w in the cells of a part, whose strains have
-    /// been recovered.
+    /// Set @p dual from @p w, with recovered strains, in the cells of a part.
     void
     renew(const Part                               &part,
           const DistributedVector                  &w,
           const std::vector<SymmetricTensor<4, 3>> *tangents,
           OfDual                                   &dual) const;
 
-    /// Scale strains at owned nodes by numbers for each node.
+    /// Multiply strains at owned nodes by factors by node.
     void
     scale(NodalVector &strains, const std::vector<double> &factors) const;
 
@@ -231,48 +226,48 @@ namespace Viscoplastic
     void
     mirror() const;
 
-    /// Set the strains at hanging nodes to what is between their parents.
+    /// Interpolate the strains at hanging nodes from their parents.
     void
     interpolate_hanging_nodes(const Part &part) const;
 
     Strains
     mean_strains(const DistributedVector &u) const;
 
-    /// eps* - eps_h at the points of an owned cell, from what is recovered and
-    /// eps_h.
+    /// Return eps* - eps_h, from recovered values, at the points of a cell.
     std::array<SymmetricTensor<2, 3>, n_points>
     defects(const unsigned int                                 cell,
             const std::array<SymmetricTensor<2, 3>, n_points> &strains) const;
 
-    /// The strains that act in an owned cell, and how much div u_h is larger
-    /// than its mean at its points: zero without mean dilatation.
+    /// Return the strains of the elastic form in an owned cell, and set @p
+    /// dilatations to the deviation of div u_h from its mean at its points:
+    /// zero without mean dilatation.
     std::array<SymmetricTensor<2, 3>, n_points>
     strains(const unsigned int       cell,
             const DistributedVector &u,
             double                  *dilatations = nullptr) const;
 
     const LocalCells<dim> &local;
-    /// The components that strains have, as SymmetricTensor counts them: in the
-    /// plane, in the plane and around an axis, or all.
+    /// The nonzero components of strains, as SymmetricTensor counts them: in
+    /// the plane, in the plane and normal to it, or all.
     const std::vector<unsigned int> components;
-    /// Local places of the first component at the vertices of owned cells.
+    /// Local indices of the first component at the vertices of owned cells.
     std::vector<std::array<unsigned int, n_vertices>> nodes;
-    /// The vertices of owned cells on faces where the part ends, but for planes
-    /// of symmetry, as far as the opposite one is not on such a face.
+    /// The vertices of owned cells on faces where the part ends, except for
+    /// planes of symmetry, if the opposite vertex is not on such a face.
     std::vector<std::vector<unsigned char>> ends;
-    /// The cells that share a vertex of owned cells and nothing else with them,
-    /// where the mesh around the vertex is regular; invalid elsewhere.
+    /// The cells that share one vertex and no more with an owned cell, where
+    /// the mesh around the vertex is regular; invalid elsewhere.
     std::vector<std::array<unsigned int, n_vertices>> across;
     /// Nodes on planes of symmetry, with the normal.
     std::vector<std::pair<unsigned int, Tensor<1, 3>>> mirrored;
     /// Shape functions at the points of a cell.
     std::array<std::array<double, n_vertices>, n_points> shape_values;
     std::vector<Part>                                    parts;
-    /// Of cells, owned or not: the root of their area, or of volume.
+    /// Of cells, including ghosts: the dim-th root of their area or volume.
     std::vector<double> widths;
 
-    /// eps* at the nodes; kept, since a new vector for each step costs as much
-    /// as to fill it.
+    /// eps* at the nodes; kept, since allocating the vector in each step costs
+    /// as much as filling it.
     mutable NodalVector values;
     /// Sums and maxima over the cells around nodes, for singular points.
     mutable NodalVector sums, maxima;

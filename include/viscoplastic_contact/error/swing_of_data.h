@@ -15,18 +15,16 @@ namespace Viscoplastic
     double share = 0., energy_norm = 0.;
   };
 
-  /// How far data are, at the quarters of a step, from all that is between
-  /// their values at its ends. Points that slip meanwhile remember it, and a
-  /// body that creeps the part that relaxes in the step. Loads and friction
-  /// bounds, those of the pressure at the beginning, count as a part of the
-  /// forces of the body; prescribed displacements, gaps and motions of
-  /// foundations as a part of its largest displacement, motions with the work
-  /// of friction on them at most.
+  /// Return by how much data, at the quarters of a step, lie outside the range
+  /// of their values at its ends. Slipping points remember that, and a creeping
+  /// body the part that relaxes in the step. Loads and friction bounds, with
+  /// the pressure at the beginning, count relative to the forces of the body;
+  /// prescribed displacements, gaps and motions of foundations relative to its
+  /// largest displacement, the latter with at most the work of friction.
   ///
-  /// Zero, and with data that do not depend on time for nothing, where each
-  /// datum rises or falls all along the step and no vector turns by more than
-  /// half a circle; of second order where a datum turns back.
-  /// Collective.
+  /// Zero if each datum is monotone in the step and no vector turns by more
+  /// than half a circle, of second order if a datum turns back; nothing is
+  /// evaluated for data that do not depend on time. Collective.
   template <int dim>
   Swing
   swing_of_data(const Discretization<dim> &discretization,

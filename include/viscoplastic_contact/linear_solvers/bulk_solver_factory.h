@@ -12,8 +12,8 @@
 
 namespace Viscoplastic
 {
-  /// The matrix of a step on one mesh, with what solvers have to know of its
-  /// unknowns. All references stay in use.
+  /// The matrix of a step on one mesh, with the properties of its unknowns that
+  /// solvers need. Keeps references.
   struct BulkSystem
   {
     unsigned int             dim; // degrees of freedom a node
@@ -22,19 +22,18 @@ namespace Viscoplastic
     const std::vector<bool> &excluded;
     /// The rigid body modes on owned entries, zero where excluded.
     std::function<std::vector<DistributedVector>()> rigid_body_modes;
-    /// Makes the hierarchy of meshes for geometric multigrid.
+    /// Returns the hierarchy of meshes for geometric multigrid.
     std::function<NodeHierarchy()> hierarchy;
     /// The restriction to the contact face; empty without contact points.
     const FaceRestriction &face;
-    /// The number of owned degrees of freedom, last in the numbering, that
-    /// belong to no node of the mesh.
+    /// The number of owned degrees of freedom, the last, without a mesh node.
     unsigned int n_beyond_mesh = 0;
   };
 
 
-  /// Choose and set up a solver for the matrix of @p system. Of @p demand only
-  /// what the system itself does not tell counts (choice, expected number of
-  /// solves). Throws ExcMessage for a choice that cannot be had. Collective.
+  /// Choose and set up a solver for @p system. Of @p demand only data that the
+  /// system does not contain are used (choice, expected number of solves).
+  /// Throws ExcMessage if the choice is not available. Collective.
   std::unique_ptr<BulkSolver>
   make_bulk_solver(const BulkSystem &system, SolverDemand demand);
 } // namespace Viscoplastic

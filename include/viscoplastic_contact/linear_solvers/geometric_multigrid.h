@@ -14,18 +14,17 @@
 
 namespace Viscoplastic
 {
-  /// A multigrid cycle on the nested meshes from which the mesh has come: one
-  /// sweep of Gauss-Seidel by nodes before and after the correction by the mesh
-  /// below. On the first mesh there is a direct solver or, where it is large,
-  /// one cycle of smoothed aggregation between two sweeps.
+  /// A multigrid V-cycle on the nested meshes that refinement has made: one
+  /// sweep of nodal block Gauss-Seidel before and after the coarse-mesh
+  /// correction. The first level has a direct solver or, if it is large, one
+  /// cycle of smoothed aggregation between two sweeps.
   ///
-  /// The matrices of coarser meshes are those of the same bilinear form on
-  /// their spaces (Galerkin products), whatever the material. They know nothing
-  /// of the truncation: LevelMasks do, and another truncation costs little.
-  /// Multigrid on truncated spaces is that of Graeser and Kornhuber, J. Comput.
-  /// Math. 27, 2009.
+  /// The matrices of coarser meshes are Galerkin products, for any material.
+  /// They do not contain the truncation: LevelMasks apply it, so that changing
+  /// it costs little. Multigrid on truncated spaces is that of Graeser and
+  /// Kornhuber, J. Comput. Math. 27, 2009.
   ///
-  /// The levels are in single precision, which is enough for a preconditioner.
+  /// Levels use single precision, which suffices for a preconditioner.
   template <int dim>
   class GeometricMultigrid : public Preconditioner
   {
@@ -33,13 +32,13 @@ namespace Viscoplastic
     struct Options
     {
       /// The first level is the finest mesh with at most so many unknowns, or
-      /// the first mesh.
+      /// the coarsest mesh if all have more.
       unsigned int coarse_size = 100;
     };
 
-    /// @p excluded: owned degrees of freedom that are no unknowns;
-    /// @p rigid_body_modes: on owned entries, zero where excluded, if the first
-    /// level is too large for a direct solver; none otherwise. Collective.
+    /// @p excluded: owned degrees of freedom that are no unknowns; @p
+    /// rigid_body_modes: on owned entries, zero where excluded, if the first
+    /// level is too large for a direct solver; otherwise empty. Collective.
     GeometricMultigrid(const DistributedMatrix              &matrix,
                        const std::vector<bool>              &excluded,
                        NodeHierarchy                         hierarchy,
@@ -65,7 +64,7 @@ namespace Viscoplastic
     vmult_untruncated(DistributedVector       &y,
                       const DistributedVector &x) const override;
 
-    /// The truncation for which smoothed aggregation was built.
+    /// Return the truncation for which smoothed aggregation was set up.
     std::optional<PreconditionerState>
     state() const override;
 
@@ -75,16 +74,16 @@ namespace Viscoplastic
   private:
     struct Level;
 
-    /// Give all levels the values of the present matrix.
+    /// Set all levels to the values of the present matrix.
     void
     fill();
 
-    /// The rigid body modes on the first level, one after the other.
+    /// Return the rigid body modes on the first level, one after the other.
     std::vector<double>
     on_first_level(const std::vector<DistributedVector> &modes) const;
 
-    /// Make masks and what goes with them on the first level. Returns whether
-    /// that was set up anew.
+    /// Set the masks and the coarse solver for a truncation. Returns whether
+    /// the coarse solver was set up anew.
     bool
     set_masks(const typename LevelMasks<dim>::Masking masking,
               const FaceTruncation                   *truncation,
@@ -102,9 +101,9 @@ namespace Viscoplastic
     const MPI_Comm           communicator;
     const ContactLayout     &face;
 
-    /// The first node of each rank, and the end.
+    /// The first node of each rank, and the total number.
     std::vector<NodeHierarchy::Node> begins;
-    /// The mesh of the first level; the others follow.
+    /// The mesh of the first level; finer ones follow.
     unsigned int first_mesh = 0;
     /// Nodes of the last level whose frames are rotated, and their directions.
     std::vector<std::pair<unsigned int, Tensor<2, dim>>> rotated_nodes;
@@ -115,7 +114,7 @@ namespace Viscoplastic
     std::unique_ptr<CoarseSolver<dim>> coarse;
     /// The truncation for which smoothed aggregation was built.
     std::optional<FaceTruncation> built_for;
-    /// The unit of stiffness on the levels, whose single precision has a small
+    /// The unit of stiffness on the levels, as single precision has a small
     /// range.
     double unit = 1.;
   };

@@ -13,7 +13,7 @@
 namespace Viscoplastic
 {
   /// Preconditioned conjugate gradients on the truncated space, on any number
-  /// of ranks.
+  /// of ranks; GMRES if equations of slipping points are tilted.
   class KrylovSolver : public BulkSolver
   {
   public:
@@ -78,7 +78,7 @@ namespace Viscoplastic
     const FaceRestriction            &restriction;
     const ContactLayout              &face;
     std::unique_ptr<SparseFaceMatrix> sparse_face_matrix;
-    /// The rows and columns of nodes on the face.
+    /// The blocks of the matrix with a row or a column on the face.
     std::vector<DistributedMatrix::Place> face_blocks;
 
     std::unique_ptr<Preconditioner> preconditioner;

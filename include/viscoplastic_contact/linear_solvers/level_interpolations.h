@@ -10,18 +10,17 @@
 
 namespace Viscoplastic
 {
-  /// The interpolations of the unknowns between the meshes of a hierarchy, in
-  /// Cartesian components. Apart from interfaces between bodies they are those
-  /// of displacements. They are made from the last mesh down, since what lies
-  /// opposite to a node of a coarse mesh is what lies there on the last mesh,
-  /// by its coarse nodes: so the spaces stay nested. Calls are collective.
+  /// Interpolations of the unknowns between the meshes of a hierarchy, in
+  /// Cartesian components: except at interfaces between bodies, those of
+  /// displacements. They are constructed from the finest mesh down: the nodes
+  /// opposite to a coarse node are those on the finest mesh, expressed by
+  /// coarse nodes, so that the spaces stay nested. Calls are collective.
   class LevelInterpolations
   {
   public:
     using Node = NodeHierarchy::Node;
 
-    /// @p begins: the first node of each rank, and the end. Arguments stay in
-    /// use.
+    /// Keeps references. @p begins: the first node of each rank, and the end.
     LevelInterpolations(const NodeHierarchy     &hierarchy,
                         const std::vector<Node> &begins,
                         const MPI_Comm           communicator)
@@ -31,9 +30,9 @@ namespace Viscoplastic
       , opposite(hierarchy.opposite)
     {}
 
-    /// The interpolation to @p mesh, the last one in the first call and then
-    /// the one before, from the next coarser one: rows of its owned @p nodes,
-    /// then of @p ghosts.
+    /// Return the interpolation to @p mesh, the finest one in the first call
+    /// and then the next coarser each time, from the mesh below it: rows of its
+    /// owned @p nodes, then of @p ghosts.
     Interpolation
     next(const unsigned int       mesh,
          const std::vector<Node> &nodes,
@@ -42,9 +41,9 @@ namespace Viscoplastic
   private:
     using Row = std::vector<NodeHierarchy::Parent>;
 
-    /// The rows of owned nodes that differ from the interpolation of
-    /// displacements (@p displacement: rows of owned nodes), since they or
-    /// their parents have jumps across an interface for unknowns.
+    /// Return the rows of owned nodes that differ from the interpolation of
+    /// displacements (@p displacement: rows of owned nodes), because the
+    /// unknowns of these nodes or their parents are jumps across an interface.
     std::map<Node, Row>
     at_interfaces(const unsigned int                    mesh,
                   const std::vector<Node>              &nodes,
@@ -53,7 +52,7 @@ namespace Viscoplastic
     const NodeHierarchy     &hierarchy;
     const std::vector<Node> &begins;
     const MPI_Comm           communicator;
-    /// Mortar rows of owned nodes of the mesh of the next call.
+    /// Mortar rows of owned nodes on the mesh of the next call.
     std::map<Node, Row> opposite;
   };
 } // namespace Viscoplastic

@@ -11,25 +11,25 @@
 
 namespace Viscoplastic
 {
-  /// A mesh of a hierarchy as multigrid works on it: the owned rows of its
-  /// matrix and the interpolation from the mesh below, in single precision and
-  /// Cartesian components. Nodes have local numbers, the owned ones first.
+  /// A level of multigrid: the owned rows of its matrix and the interpolation
+  /// from the next coarser level, in single precision and Cartesian components.
+  /// Nodes have local numbers, the owned ones first.
   template <int dim>
   class MultigridLevel
   {
   public:
     using Vector = LinearAlgebra::distributed::Vector<float>;
 
-    /// @p nodes: the owned ones; @p begins: the first node of each rank in the
-    /// last mesh, and the end; @p others: nodes of other ranks that vectors
-    /// need besides those of the matrix. Collective.
+    /// @p nodes: the owned ones; @p begins: the first node of each rank on the
+    /// finest mesh, and the end; @p others: nodes of other ranks that vectors
+    /// need in addition to those of the matrix. Collective.
     MultigridLevel(const BlockRows<dim>                   &matrix,
                    const std::vector<NodeHierarchy::Node> &nodes,
                    const std::vector<NodeHierarchy::Node> &others,
                    const std::vector<NodeHierarchy::Node> &begins,
                    const MPI_Comm                          communicator);
 
-    /// The nodes of the level by their numbers in the last mesh, ascending.
+    /// Return the level's nodes by their numbers on the finest mesh, ascending.
     const std::vector<NodeHierarchy::Node> &
     owned_nodes() const
     {
@@ -42,14 +42,14 @@ namespace Viscoplastic
     std::vector<unsigned int>
     local_numbers(const std::vector<NodeHierarchy::Node> &nodes) const;
 
-    /// The consecutive number over all ranks of a node with this local number.
+    /// Return a local node's number, consecutive over all ranks.
     types::global_dof_index
     global_number(const unsigned int node) const
     {
       return partitioner->local_to_global(node * dim) / dim;
     }
 
-    /// Take other values in the same sparsity pattern.
+    /// Set other values in the same sparsity pattern.
     void
     set_values(const BlockRows<dim> &matrix);
 
@@ -68,8 +68,8 @@ namespace Viscoplastic
       rows.set_row_sum(node, block);
     }
 
-    /// The block on the diagonal, with what couplings of ranks add to it for
-    /// the smoother.
+    /// Return the diagonal block of the smoother: that of the matrix, plus a
+    /// term for couplings between ranks.
     NodeBlock<dim>
     smoothing_block(const unsigned int node) const;
 
@@ -79,8 +79,8 @@ namespace Viscoplastic
       rows.set_inverse_block(node, block);
     }
 
-    /// One sweep of Gauss-Seidel for A x = b: forward from x = 0, or backward.
-    /// Ranks do not wait for each other.
+    /// Apply one sweep of Gauss-Seidel to A x = b: forward from x = 0, or
+    /// backward. Ranks do not wait for each other.
     void
     smooth_forward_from_zero(Vector &x, const Vector &b) const;
     void
@@ -116,7 +116,7 @@ namespace Viscoplastic
   };
 
 
-  /// answer(node) as the owner of each node has it. Collective.
+  /// Return answer(node) of the owner of each node. Collective.
   std::vector<std::vector<NodeHierarchy::Parent>>
   ask_owners(const std::vector<NodeHierarchy::Node> &nodes,
              const std::vector<NodeHierarchy::Node> &begins,

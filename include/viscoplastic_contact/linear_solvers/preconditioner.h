@@ -16,13 +16,12 @@ namespace Viscoplastic
   public:
     virtual ~Preconditioner() = default;
 
-    /// The name of the preconditioner in messages, e.g. "algebraic multigrid
-    /// (ML)".
+    /// Return the name in messages, e.g. "algebraic multigrid (ML)".
     virtual std::string
     name() const = 0;
 
-    /// The matrix has other values in the same pattern. Returns false if a new
-    /// preconditioner is as good.
+    /// Adapt to new values of the matrix in the same pattern. Returns false if
+    /// constructing a new preconditioner is as good.
     virtual bool
     renew()
     {
@@ -30,25 +29,25 @@ namespace Viscoplastic
     }
 
     /// Set the truncated space and the springs of vmult(). Without @p
-    /// may_rebuild the truncation is only tried, and nothing is set up anew.
+    /// may_rebuild the truncation is temporary, and nothing is set up anew.
     virtual void
     set_truncation(const FaceTruncation &truncation,
                    const bool            may_rebuild) = 0;
 
-    /// y := M^{-1} x. Components of y outside of the truncated space mean
-    /// nothing.
+    /// y := M^{-1} x. Components of y outside of the truncated space are
+    /// undefined.
     virtual void
     vmult(DistributedVector &y, const DistributedVector &x) const = 0;
 
-    /// y := M^{-1} x for the matrix without truncation and springs; y means
-    /// nothing on excluded components.
+    /// y := M^{-1} x for the matrix without truncation and springs; y is
+    /// undefined on excluded components.
     virtual void
     vmult_untruncated(DistributedVector       &y,
                       const DistributedVector &x) const = 0;
 
-    /// As vmult_untruncated(), with a preconditioner that was set up for the
-    /// whole matrix: it is made at the first call, which costs as much as
-    /// iterations_for_whole() iterations with the truncated one.
+    /// Like vmult_untruncated(), with a preconditioner set up for the whole
+    /// matrix, at the first call; that costs as much as iterations_for_whole()
+    /// iterations with the truncated one.
     virtual void
     vmult_whole(DistributedVector &y, const DistributedVector &x) const
     {
@@ -66,7 +65,7 @@ namespace Viscoplastic
     learn(const unsigned int /*iterations*/, const double /*decades*/)
     {}
 
-    /// See BulkSolver.
+    /// See BulkSolver::preconditioner_state().
     virtual std::optional<PreconditionerState>
     state() const
     {

@@ -11,24 +11,24 @@
 
 namespace Viscoplastic
 {
-  /// The rows of a matrix for products with vectors: those with the same
-  /// values, of which uniform meshes have many, share them. What is read is
-  /// what a product costs. Nodes have local numbers, the owned ones first.
+  /// The rows of a matrix for products with vectors, whose cost is that of
+  /// reading them: rows with the same values, frequent on uniform meshes, share
+  /// them. Nodes have local numbers, the owned ones first.
   ///
-  /// Values are rounded to what makes rows of equal cells equal: to the last
-  /// digit but one of single precision.
+  /// Values are rounded to all but the last binary digit of single precision,
+  /// so that rows of equal cells are equal.
   template <int dim>
   class SharedRows
   {
   public:
     using Block = PackedBlock<dim>;
 
-    /// @p local_columns: the local numbers of the columns of @p matrix.
+    /// Set values; @p local_columns: local numbers of the columns of @p matrix.
     void
     set_values(const BlockRows<dim>            &matrix,
                const std::vector<unsigned int> &local_columns);
 
-    /// The number of blocks of the matrix, and of those that differ.
+    /// Return the number of off-diagonal blocks, and of those stored.
     std::size_t
     n_blocks() const
     {
@@ -40,14 +40,14 @@ namespace Viscoplastic
       return values.size();
     }
 
-    /// The sum of the blocks of a row; springs at a node change it.
+    /// Return or set the sum of the blocks of a row, which springs change.
     NodeBlock<dim>
     row_sum(const unsigned int node) const;
     void
     set_row_sum(const unsigned int node, const NodeBlock<dim> &block);
 
-    /// The block on the diagonal, and for each component the sum of absolute
-    /// values of a row in columns of nodes that are not owned.
+    /// Return the diagonal block, and for each component the sum of absolute
+    /// values of its row in columns of nodes that are not owned.
     std::pair<NodeBlock<dim>, Tensor<1, dim>>
     diagonal_block(const unsigned int node) const;
 
@@ -55,14 +55,13 @@ namespace Viscoplastic
     void
     residual(float *r, const float *x, const float *b) const;
 
-    /// Set the inverse of a node's diagonal block, by which Gauss-Seidel
-    /// multiplies residuals.
+    /// Set the inverse of a node's diagonal block for Gauss-Seidel.
     void
     set_inverse_block(const unsigned int node, const NodeBlock<dim> &block);
 
-    /// One sweep of Gauss-Seidel for A x = b: forward from x = 0, or backward.
-    /// Values of nodes that are not owned do not change; forward they count as
-    /// zero.
+    /// Apply one sweep of Gauss-Seidel to A x = b: forward from x = 0, or
+    /// backward. Values of nodes that are not owned do not change; forward they
+    /// count as zero.
     void
     smooth_forward_from_zero(float *x, const float *b) const;
     void

@@ -71,8 +71,8 @@ namespace Viscoplastic
         {
           const std::string row    = std::to_string(i + 1),
                             column = std::to_string(j + 1);
-          // Rounding of matrices that a program has written is no asymmetry.
-          // Written so that NaN is refused, too.
+          // The tolerance allows for rounding in the text of the matrix. The
+          // comparison also refuses NaN.
           AssertThrow(std::fabs(voigt(i, j) - voigt(j, i)) <= 1e-8 * scale &&
                         std::isfinite(scale),
                       ExcMessage("The Voigt matrix has " +

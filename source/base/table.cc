@@ -157,8 +157,7 @@ namespace Viscoplastic
       return y.back();
     if (may_jump())
       return y[next - 1];
-    // This form returns the values of rows exactly, and y[next] - y[next - 1]
-    // cannot overflow.
+    // This form is exact at rows and cannot overflow in y[next] - y[next - 1].
     const double share = (argument - x[next - 1]) / (x[next] - x[next - 1]);
     return (1. - share) * y[next - 1] + share * y[next];
   }

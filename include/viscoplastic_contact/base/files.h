@@ -32,10 +32,8 @@ namespace Viscoplastic
 
   /// Replace a file atomically: whatever happens, the old or the new contents
   /// are there. The new contents are written to a file with the suffix `.part',
-  /// which is then renamed.
-  ///
-  /// With @p to_disk this holds also for a power failure, at a cost of some
-  /// milliseconds.
+  /// which is then renamed. With @p to_disk this holds also for a power
+  /// failure, at a cost of some milliseconds.
   void
   replace_file(const std::string &name,
                const std::string &bytes,

@@ -64,8 +64,7 @@ namespace Viscoplastic
 
 
   /// Return the candidate closest to @p name, or "" if none is close. Case,
-  /// blanks and punctuation do not count; the beginning of a long name is
-  /// close.
+  /// blanks and punctuation do not count; the beginning of a name is close.
   std::string
   nearest_name(const std::string              &name,
                const std::vector<std::string> &candidates);

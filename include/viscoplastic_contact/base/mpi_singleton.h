@@ -6,6 +6,20 @@
 namespace Viscoplastic
 {
   /// Let a process that is not launched as part of an MPI job run on its own.
+  ///
+  /// Without mpirun, MPI_Init of Open MPI 4 starts a daemon (orted) for each
+  /// process, which only MPI_Comm_spawn needs. The daemon takes time to start,
+  /// outlives a process that is killed, and simultaneous starts may fail.
+  /// Without daemons, all such processes would share one session directory,
+  /// which the first one to end removes while others start; they do not need
+  /// it. MPI_Init also lets network libraries look for adapters, and that of
+  /// Omni-Path waits a quarter of a second if there are none; the component
+  /// `ob1' does without these libraries.
+  ///
+  /// Call this before MPI_Init: unless a launcher is present, it sets variables
+  /// of Open MPI that turn all this off, if they are not set in the
+  /// environment. Other implementations of MPI ignore them. Returns whether
+  /// there is no launcher.
   inline bool
   run_without_mpi_job()
   {

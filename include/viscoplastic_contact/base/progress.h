@@ -181,7 +181,7 @@ namespace Viscoplastic
 
   /// While an object of this class lives, a run that is silent for some time
   /// prints where it is, from within the iterations of a step: "Still at step 3
-  /// (t = 0.3): 2 Newton, 17 contact, 340 linear iterations elapsed 31 s".
+  /// (t = 0.3): 2 Newton, 17 contact, 340 linear iterations  elapsed 31 s".
   /// Iterations and steps report by count() and begin_step(), which do nothing
   /// if there is no such object. Not thread-safe.
   class Heartbeat

@@ -22,8 +22,7 @@ namespace Viscoplastic
   using DistributedVector = dealii::TrilinosWrappers::MPI::Vector;
   class DistributedMatrix;
 
-  /// The largest id of boundaries and materials in mesh files, parameter files
-  /// and expressions.
+  /// The largest id of boundaries and materials in files and expressions.
   constexpr unsigned int largest_id = 999999999;
 
 
@@ -45,8 +44,7 @@ namespace Viscoplastic
   template decltype(function<2>) function<2>; \
   template decltype(function<3>) function<3>
 
-/// Explicit instantiation of a class template whose only parameter is the
-/// dimension.
+/// Explicit instantiation of a class template with the only parameter dim.
 #define VISCOPLASTIC_INSTANTIATE_CLASS(Class) \
   template class Class<2>;                    \
   template class Class<3>

@@ -8,8 +8,8 @@
 
 namespace Viscoplastic
 {
-  /// Exponents of length, time, stress and temperature; all units in a scene
-  /// are products of these powers. For example, a force is a stress times
+  /// Exponents of length, time, stress and temperature, of whose powers all
+  /// units in a scene are products. For example, a force is a stress times
   /// length^2.
   struct Dimension
   {
@@ -64,17 +64,16 @@ namespace Viscoplastic
   };
 
   /// Read the unit that follows a number ending at position @p begin of @p
-  /// text: after a blank, as in `25 MPa', `0.022 MPa/m', `1e-5 MPa^-5/day', `3
-  /// Pa s', or after a slash, as in `5/day'. Reading stops before what may be a
-  /// part of a larger expression: after `MPa' in `25 MPa*x' and `25 MPa/2'.
-  /// Returns nothing if there is no unit.
+  /// text: after a blank, as in `25 MPa', `3 Pa s', `0.022 MPa/m', `1e-5
+  /// MPa^-5/day', or after a slash, as in `5/day'. Reading stops before what
+  /// may be a part of a larger expression: after `MPa' in `25 MPa*x' and `25
+  /// MPa/2'. Returns nothing if there is no unit.
   std::optional<UnitInText>
   read_unit(const std::string &text, const std::size_t begin);
 
 
 
-  /// The physical quantities of numbers in results, which determine their
-  /// units.
+  /// Physical quantities of numbers in results, which determine their units.
   enum class Quantity
   {
     pure_number,
@@ -131,9 +130,8 @@ namespace Viscoplastic
              std::pow(stress.si, dimension.stress);
     }
 
-    /// Return the name of the unit of @p quantity in a scene of @p dim
-    /// dimensions, such as "MN/m" for a force in plane strain; empty without
-    /// units.
+    /// Return the unit of @p quantity in a scene of @p dim dimensions, such as
+    /// "MN/m" for a force in plane strain; empty without units.
     std::string
     name(const Quantity quantity, const unsigned int dim = 3) const;
 

@@ -78,14 +78,14 @@ namespace Viscoplastic
       for (const std::size_t place : counts.arguments)
         {
           if (place >= arguments.size())
-            return; // deal.II says it
+            return; // deal.II reports it
           numbers += (numbers.empty() ? "" : ", ") + arguments[place];
           for (const std::string &text :
                Utilities::split_string_list(arguments[place], ','))
             {
               const auto value = number_of(text);
               if (!value)
-                return; // deal.II says it
+                return; // deal.II reports it
               is_negative = is_negative || *value < 0.;
               // Zero, where allowed, lets deal.II choose a small number.
               if (counts.kind == CellCounts::sum)
@@ -139,7 +139,7 @@ namespace Viscoplastic
         Utilities::split_string_list(geometry.arguments, ':');
       if (geometry.generator != "subdivided_hyper_rectangle" ||
           arguments.size() < 3)
-        return; // deal.II says it
+        return; // deal.II reports it
       const auto lists = Utilities::split_string_list(arguments[0], ';');
       const auto refuse_unless = [&](const bool good, const std::string &what) {
         AssertThrow(good,
@@ -165,7 +165,7 @@ namespace Viscoplastic
       const std::vector<double> first = list_of_numbers(arguments[1]),
                                 last  = list_of_numbers(arguments[2]);
       if (first.size() != dim || last.size() != dim)
-        return; // deal.II says it
+        return; // deal.II reports it
       for (unsigned int d = 0; d < dim; ++d)
         {
           const std::vector<double> steps  = list_of_numbers(lists[d]);

@@ -21,7 +21,7 @@ namespace Viscoplastic
     {
       std::string  name;
       unsigned int dimension, n_nodes;
-      /// 1 if all nodes are corners.
+      /// The polynomial degree; 1 if all nodes are corners.
       unsigned int order = 1;
     };
 

@@ -173,8 +173,9 @@ namespace Viscoplastic
              const Stiffness &stiffness,
              const LawPoint  &point) const
       {
-        // The steps of central differences balance truncation and rounding; at
-        // rest they are small compared with stresses or strains of this body.
+        // The steps of central differences balance truncation and rounding;
+        // their lower bound at rest is small for stresses or strains of this
+        // body.
         const Point<3> floor(1e-6 * stiffness.shear_modulus(),
                              1e-6 * stiffness.shear_modulus(),
                              1e-6);

@@ -87,7 +87,7 @@ namespace Viscoplastic
                      least_modulus,
                      largest_modulus);
 
-    // With engineering shears, Voigt's matrix holds the components themselves.
+    // Voigt's matrix for engineering shears contains the tensor components.
     constexpr std::array<std::pair<unsigned int, unsigned int>, 6> axes = {
       {{0, 0}, {1, 1}, {2, 2}, {1, 2}, {0, 2}, {0, 1}}};
     auto data = std::make_shared<Anisotropic>();

@@ -124,7 +124,7 @@ namespace Viscoplastic
                 for (unsigned int k = i + 1; k < 6; ++k)
                   x[i] -= factor[k][i] * x[k];
                 x[i] /= factor[i][i];
-                // engineering shears
+                // x has engineering shears
                 result.access_raw_entry(i) = i < 3 ? x[i] : x[i] / 2;
               }
           }

@@ -160,9 +160,8 @@ namespace Viscoplastic
     }
   };
 
-  /// Return the map for radial flow that scales the deviator of a trial stress
-  /// by 1/(1 + a), and its changes along @p direction (of any length) by 1/(1 +
-  /// b).
+  /// Return the map for radial flow that divides the deviator of a trial stress
+  /// by 1 + a, and changes of it along @p direction (of any length) by 1 + b.
   inline ErrorRelaxation
   radial_relaxation(const double                 a,
                     const double                 b,
@@ -187,8 +186,8 @@ namespace Viscoplastic
 
   /// The positive definite tangent that linear solvers use in the place of C:
   /// definite_tangent() of algorithmic_tangent(); in closed form for radial
-  /// flow in isotropic bodies. Optionally also computes its inverse @p
-  /// compliance.
+  /// flow in isotropic bodies. Also computes the inverse @p compliance, if
+  /// given.
   SymmetricTensor<4, 3>
   step_tangent(const ViscoplasticLaw       &law,
                const SymmetricTensor<2, 3> &stress,

@@ -8,8 +8,8 @@
 
 namespace Viscoplastic
 {
-  /// The pressure p = k phi(w) of a deformable foundation at the penetration w
-  /// > 0, with k >= 0, phi(0) = 0, and a nondecreasing slope phi' > 0.
+  /// The pressure of a deformable foundation at a penetration w > 0, which is p
+  /// = k phi(w) with k >= 0, phi(0) = 0, and a nondecreasing slope phi' > 0.
   struct PressureLaw
   {
     /// p, dp/dw and int_0^w p as functions of (k, w); w as one of (k, p).

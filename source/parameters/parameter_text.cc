@@ -247,8 +247,7 @@ namespace Viscoplastic
                 std::to_string(line.number) +
                 "; keep one of them, or move one to a file of its own to "
                 "override the other."));
-            // ParameterHandler interprets braces as alternatives of multiple
-            // runs.
+            // ParameterHandler takes braces for alternatives of several runs.
             AssertThrow(line.value.find('{') == std::string::npos,
                         ExcMessage(line.origin() + ": '" + excerpt(path) +
                                    "' is '" + excerpt(line.value) +

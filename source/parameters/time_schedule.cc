@@ -46,8 +46,7 @@ namespace Viscoplastic
               if (parts.size() == 2)
                 {
                   end = Utilities::string_to_double(parts[0]);
-                  // Read as a double, since large numbers would overflow an
-                  // integer.
+                  // Read as a double: large numbers would overflow an integer.
                   const double n = Utilities::string_to_double(parts[1]);
                   if (n == std::floor(n))
                     n_steps =

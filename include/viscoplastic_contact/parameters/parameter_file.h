@@ -78,8 +78,8 @@ namespace Viscoplastic
     void
     print(std::ostream &out) const;
 
-    /// Return all entries as declared_entries() does, with their values as
-    /// written in the files.
+    /// Return all entries like declared_entries(), but with values as in the
+    /// files.
     boost::property_tree::ptree
     entries_as_written() const;
 
@@ -88,8 +88,7 @@ namespace Viscoplastic
     std::map<std::string, std::string>
     entries_with_units() const;
 
-    /// Replace converted values of entries in a message by the text in the
-    /// files, with units.
+    /// Replace values of entries in a message by their text in the files.
     std::string
     quote_as_written(const std::string &sentence) const;
 

@@ -48,6 +48,8 @@ namespace Viscoplastic
   /// includes are relative to the including file and must close the subsections
   /// that they open, the same entry twice in one file is an error, and
   /// `Boundary 03' becomes `Boundary 3'.
+  ///
+  /// Throws ExcMessage with file and line.
   std::vector<ParameterLine>
   read_parameter_lines(const std::vector<std::string> &files,
                        const std::vector<std::string> &assignments);

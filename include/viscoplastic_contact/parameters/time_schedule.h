@@ -32,8 +32,7 @@ namespace Viscoplastic
       }
     };
 
-    /// Parse @p phases `end time: number of steps, ...', with at most 1e9
-    /// steps; throws ExcMessage.
+    /// Parse @p phases `end time: number of steps, ...'; throws ExcMessage.
     explicit TimeSchedule(const std::string &phases);
 
     unsigned int

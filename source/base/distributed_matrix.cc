@@ -20,15 +20,15 @@ namespace Viscoplastic
 
 
 
-    /// Add to @p lists those of other ranks that have nodes of this rank;
-    /// @p begins: the first node of each rank, and the end. Collective.
+    /// Append to @p lists those of other ranks that contain nodes of this rank;
+    /// @p begins are the first nodes of all ranks, and the end. Collective.
     void
     add_lists_of_others(NodeLists               &lists,
                         const std::vector<Node> &begins,
                         const MPI_Comm           communicator)
     {
       const unsigned int me = Utilities::MPI::this_mpi_process(communicator);
-      std::map<unsigned int, std::vector<Node>> to_send; // each with its length
+      std::map<unsigned int, std::vector<Node>> to_send; // length, then nodes
       std::vector<unsigned int>                 ranks;
       for (std::size_t l = 0; l + 1 < lists.begin.size(); ++l)
         {
@@ -61,7 +61,7 @@ namespace Viscoplastic
 
 
 
-    /// y := y + B x for a block of a row of y, and for its transpose.
+    /// y := y + B x, and below y := y + B^T x, for a block B.
     template <int dim>
     void
     add_product(const double *block, const double *x, double *y)
@@ -99,7 +99,7 @@ namespace Viscoplastic
   DistributedMatrix::Pattern::has(const unsigned int row,
                                   const unsigned int column) const
   {
-    // Of two nodes of the same rank, the first one has it.
+    // Of two nodes of the same rank, the row of the first stores the block.
     if (row < n_owned)
       return column >= row;
     return column < n_owned || column >= row ||
@@ -131,7 +131,7 @@ namespace Viscoplastic
     numbers.reserve(lists.nodes.size());
     for (const Node node : lists.nodes)
       numbers.push_back(local_number(node));
-    // The lists of each node.
+    // The lists that contain each node, in compressed storage.
     std::vector<std::size_t> first_list(n_nodes + 1, 0);
     for (const unsigned int n : numbers)
       ++first_list[n + 1];
@@ -143,13 +143,13 @@ namespace Viscoplastic
       for (std::size_t k = lists.begin[l]; k < lists.begin[l + 1]; ++k)
         lists_of_nodes[next[numbers[k]]++] = l;
 
-    // More than there are as a rule; of what is not used no memory is taken.
+    // This is usually more than needed; unused pages take no memory.
     columns.reserve(n_nodes * (dim == 2 ? 8ULL : 24ULL));
     begin.reserve(n_nodes + 1);
     std::vector<unsigned int> seen_in(n_nodes, numbers::invalid_unsigned_int);
     for (unsigned int i = 0; i < n_nodes; ++i)
       {
-        // The diagonal, whether there are lists or not.
+        // The diagonal is stored even for nodes without lists.
         if (i < n_owned)
           columns.push_back(i);
         seen_in[i] = i < n_owned ? i : numbers::invalid_unsigned_int;
@@ -157,7 +157,7 @@ namespace Viscoplastic
           {
             const std::size_t l = lists_of_nodes[k];
             if (i >= n_owned && l >= n_own_lists)
-              continue; // its owner adds to it
+              continue; // another rank contributes this list
             for (std::size_t e = lists.begin[l]; e < lists.begin[l + 1]; ++e)
               if (const unsigned int j = numbers[e];
                   seen_in[j] != i && has(i, j))
@@ -287,7 +287,8 @@ namespace Viscoplastic
       result.begin[i + 1] += result.begin[i];
     result.columns.resize(result.begin[n]);
     result.blocks.resize(result.begin[n]);
-    // A row has its lower triangle when its turn comes.
+    // Rows are visited in ascending order: all entries of a lower triangle have
+    // been appended when their row is visited, so columns ascend.
     std::vector<std::size_t> next(result.begin.begin(), result.begin.end() - 1);
     const auto               append =
       [&](const unsigned int i, const unsigned int j, const double *block) {
@@ -436,7 +437,7 @@ namespace Viscoplastic
     std::vector<std::size_t> first;
     std::vector<double>      shared;
     first.reserve(pattern->n_owned);
-    // Rows so far by a hash of their values.
+    // The stored rows, by a hash of their values.
     std::unordered_multimap<std::uint64_t, unsigned int> known;
     for (unsigned int i = 0; i < pattern->n_owned; ++i)
       {

@@ -12,7 +12,7 @@ namespace Viscoplastic
 {
   namespace
   {
-    /// muParser's words with the full stop that most of them lack.
+    /// A message of muParser with a full stop, which most of them lack.
     std::string
     as_sentence(const std::string &words)
     {
@@ -21,8 +21,8 @@ namespace Viscoplastic
 
 
 
-    /// The name, of a variable or function, that muParser complains of because
-    /// it does not know it; empty if it complains of something else.
+    /// The unknown name of a variable or function of which a message of
+    /// muParser complains; empty if it complains of something else.
     std::string
     unknown_name(const std::string &words, const std::string &variables)
     {
@@ -35,7 +35,7 @@ namespace Viscoplastic
 
 
 
-    /// "x, y and t" of "x,y,t".
+    /// Turn "x,y,t" into "x, y and t".
     std::string
     list_of(const std::string &variables)
     {
@@ -45,9 +45,9 @@ namespace Viscoplastic
 
 
 
-    /// What muParser takes, but nobody means: the last of a list `0,5' as its
-    /// value, an assignment `x = 1' for a comparison; and random numbers, which
-    /// differ from run to run and from rank to rank.
+    /// Refuse likely mistakes that muParser accepts: a list `0,5', of which it
+    /// takes the last value; an assignment `x = 1' in place of a comparison;
+    /// and random numbers, which differ from run to run and from rank to rank.
     void
     refuse_slips(const std::string &text, const std::string &entry)
     {
@@ -109,7 +109,7 @@ namespace Viscoplastic
                            text,
                            {{"pi", numbers::PI}, {"Pi", numbers::PI}},
                            /* time_dependent = */ true);
-        parser->value(Point<dim>()); // muParser parses at the first value
+        parser->value(Point<dim>()); // muParser parses at the first evaluation
       }
     catch (const std::exception &)
       {
@@ -176,7 +176,7 @@ namespace Viscoplastic
       (i < dim ? position_dependent : has_additional_variable) |=
         mentions(text, names[i]);
     constant = parser->value(Point<dim>());
-    // Not everybody asks a constant for its value.
+    // Check a constant here, since its value may never be asked for.
     if (!time_dependent && !position_dependent && !has_additional_variable)
       value(Point<dim>(), 0.);
   }
@@ -229,7 +229,7 @@ namespace Viscoplastic
       {
         const std::string gap =
           parser ? with_tables<dim>(parser).last_gap() : "";
-        // The components of x, which other variables may follow.
+        // Other variables may follow the components of x.
         auto names = Utilities::split_string_list(variables);
         names.resize(dim);
         std::string position;

@@ -28,7 +28,7 @@ namespace Viscoplastic
 
   namespace
   {
-    /// Throws unless @p success, with the reason of the last system call.
+    /// Throw unless @p success, with the reason from errno.
     void
     check_written(const bool success, const std::string &name)
     {
@@ -61,8 +61,8 @@ namespace Viscoplastic
 
 
 
-    // Neither waits for the other end of a pipe nor follows a link, should one
-    // appear after the check of its type.
+    // Open without waiting for the other end of a pipe and without following a
+    // link, in case one appears after the type has been checked.
     const int for_writing =
       O_WRONLY | O_CREAT | O_TRUNC | O_NOFOLLOW | O_NONBLOCK;
 
@@ -110,11 +110,11 @@ namespace Viscoplastic
       void
       synchronize() const
       {
-        // Some file systems cannot do it for directories.
+        // EINVAL: some file systems cannot synchronize directories.
         check_written(fsync(descriptor) == 0 || errno == EINVAL, name);
       }
 
-      /// Network file systems tell only here that their disk is full.
+      /// Close the file; network file systems report a full disk only here.
       void
       close()
       {
@@ -154,7 +154,7 @@ namespace Viscoplastic
     if (!file && (errno == ENOENT || errno == ENOTDIR))
       return {};
     std::ostringstream bytes;
-    // To insert nothing would count as a failure.
+    // Inserting the buffer of an empty file would set the fail bit.
     if (file && file.peek() != std::ifstream::traits_type::eof())
       bytes << file.rdbuf();
     AssertThrow(file && bytes,
@@ -178,7 +178,7 @@ namespace Viscoplastic
 
   namespace
   {
-    /// Replace a file by what @p write leaves in the one given to it.
+    /// Replace a file by what @p write writes to its argument.
     template <typename Function>
     void
     replace(const std::string &name, const Function &write)
@@ -249,7 +249,8 @@ namespace Viscoplastic
   {
     if (descriptor < 0)
       return;
-    // In this order: who opens the file in between sees that it has gone.
+    // Unlink before releasing the lock: a process that opens the file in
+    // between finds out in acquire() that it has been unlinked.
     unlink(file.c_str());
     close(descriptor);
   }
@@ -265,7 +266,8 @@ namespace Viscoplastic
     file = directory + (directory.back() == '/' ? "" : "/") +
            "viscoplastic_contact.lock";
     require_writable_file(file);
-    // Who has had the lock removes the file: then it is made again.
+    // The previous holder may unlink the file between open() and flock(); then
+    // try again with a new file.
     for (unsigned int i = 0; i < 10; ++i)
       {
         const int opened =
@@ -282,7 +284,7 @@ namespace Viscoplastic
             close(opened);
             if (!is_taken)
               {
-                unlink(file.c_str()); // which locks nothing here
+                unlink(file.c_str()); // it has no effect here
                 return;
               }
             const std::string holder =
@@ -295,7 +297,7 @@ namespace Viscoplastic
         if (fstat(opened, &mine) == 0 && stat(file.c_str(), &there) == 0 &&
             mine.st_dev == there.st_dev && mine.st_ino == there.st_ino)
           {
-            // For the message above, no more: it may fail.
+            // The holder is only needed for the message above: ignore errors.
             const std::string holder = "process " + std::to_string(getpid()) +
                                        " on " +
                                        Utilities::System::get_hostname();
@@ -316,7 +318,7 @@ namespace Viscoplastic
   {
     namespace fs = std::filesystem;
     std::error_code error;
-    // What an installation has is found wherever it was moved to.
+    // Paths relative to the program let an installation be moved.
     const fs::path program = fs::read_symlink("/proc/self/exe", error);
     for (const fs::path &directory :
          {program.parent_path().parent_path() / "share/viscoplastic_contact",

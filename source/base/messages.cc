@@ -51,7 +51,7 @@ namespace Viscoplastic
     std::string        line, word;
     while (words >> word)
       line += (line.empty() ? "" : " ") + word;
-    // What libraries say does not always end as a sentence does.
+    // Messages of libraries do not always end with a full stop.
     if (theirs != nullptr && !line.empty() &&
         std::isalnum(static_cast<unsigned char>(line.back())) != 0)
       line += '.';
@@ -138,8 +138,8 @@ namespace Viscoplastic
 
 
 
-    /// How many letters have to be inserted, deleted, replaced, or swapped
-    /// with their neighbor.
+    /// The Damerau-Levenshtein (optimal string alignment) distance: the number
+    /// of letters to insert, delete, replace, or swap with their neighbor.
     unsigned int
     edit_distance(const std::string &a, const std::string &b)
     {
@@ -181,7 +181,7 @@ namespace Viscoplastic
     const std::string given = skeleton(name);
     if (given.empty() || given.size() > 100)
       return "";
-    // A third of the letters may be wrong.
+    // Up to a third of the letters may be wrong.
     unsigned int best_distance =
       1 + static_cast<unsigned int>(given.size()) / 3;
     std::string best;
@@ -213,7 +213,7 @@ namespace Viscoplastic
 
 
 
-  // Not by regular expressions, which need a stack as deep as a text is long.
+  // Regular expressions would need a stack as deep as the text is long.
   std::string
   identifier_at(const std::string &text, const std::size_t begin)
   {

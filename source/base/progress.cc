@@ -9,7 +9,7 @@ namespace Viscoplastic
 {
   namespace
   {
-    /// What there is to tell of a step beside its number and time.
+    /// The text on a step beside its number and time.
     std::string
     state_of(const StepProgress &step, const std::string &time_unit)
     {
@@ -32,8 +32,8 @@ namespace Viscoplastic
 
 
 
-    /// The number of a step among those of the run, as far as they are known,
-    /// and its time.
+    /// The text on the number of a step, out of all steps if their number is
+    /// known, and its time.
     std::string
     place_of(const StepProgress &step,
              const unsigned int  n_steps,
@@ -68,7 +68,7 @@ namespace Viscoplastic
     const bool   is_last = step.done ? *step.done >= 1. : step.n == n_steps;
     const double done =
       is_last ? 1. : step.done.value_or(static_cast<double>(step.n) / n_steps);
-    // Asked in each step: it keeps count.
+    // is_worth_a_line() has to be called in each step, since it keeps count.
     if (!is_worth_a_line(step, done) && !is_last && !console.is_verbose() &&
         !console.is_silent_for(long_silence))
       {

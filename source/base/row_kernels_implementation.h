@@ -3,12 +3,13 @@
 
 #include <viscoplastic_contact/base/row_kernels.h>
 
-// The loops of RowKernels, for files that compile them for a kind of processor
-// each. All of it is local to its file and nothing comes from a library: a
-// function that two files share would be that of either processor.
+// The loops of RowKernels, to be included by files that are each compiled for
+// one kind of processor. Everything has internal linkage and no library is
+// used: of an inline function in two files the linker would keep one copy, for
+// either processor.
 //
-// Vectors are passed by reference, since conventions for values differ between
-// processors.
+// Vectors are passed by reference, since the calling conventions for vector
+// values differ between processors.
 
 #define VISCOPLASTIC_CONTACT_INLINE __attribute__((always_inline)) inline
 
@@ -21,7 +22,7 @@ namespace Viscoplastic
 
 
 
-    /// The components of a node, twice in 2D.
+    /// Load the components of a node, twice in 2D.
     template <int dim>
     VISCOPLASTIC_CONTACT_INLINE void
     load(const float *const x, FourNumbers<dim> &y)
@@ -34,7 +35,7 @@ namespace Viscoplastic
 
 
 
-    /// sum := sum + block times y; each component is still to be added up.
+    /// sum := sum + block times y by entries; component() adds up rows.
     template <int dim>
     VISCOPLASTIC_CONTACT_INLINE void
     add_product(const PackedBlock<dim> &a,
@@ -59,7 +60,8 @@ namespace Viscoplastic
 
 
 
-    /// product := sum over the diagonal and the first n neighbors of row i.
+    /// product := product of row i with x, over the diagonal and the first n
+    /// neighbors.
     template <int dim>
     VISCOPLASTIC_CONTACT_INLINE void
     multiply_row(const RowTable<dim> &A,
@@ -68,12 +70,12 @@ namespace Viscoplastic
                  const float         *x,
                  PackedBlock<dim>    &product)
     {
-      // (sum_j A_ij) x_i + sum A_ij (x_j - x_i): of a smooth x the products
-      // cancel otherwise, all the more in long thin cells, and with them the
-      // digits that single precision has.
+      // Compute (sum_j A_ij) x_i + sum_j A_ij (x_j - x_i): for smooth x the
+      // products A_ij x_j nearly cancel, especially in long thin cells, which
+      // would lose the digits of single precision.
       //
-      // In 2D two sums at a time: a single one waits for each addition, and a
-      // sweep for each node.
+      // In 2D two sums are used, since each addition to a single one would wait
+      // for the previous addition.
       const PackedBlock<dim> *const a      = A.values + A.rows[i].values;
       const unsigned int *const     column = A.columns + A.rows[i].columns;
       PackedBlock<dim>              other  = {};
@@ -151,7 +153,7 @@ namespace Viscoplastic
       PackedBlock<dim> product;
       for (unsigned int i = 0; i < A.n_rows; ++i)
         {
-          // What comes later is still zero, and so are other ranks' nodes.
+          // x is still zero at later nodes and ghosts: skip those columns.
           for (unsigned int d = 0; d < dim; ++d)
             x[i * dim + d] = 0.f;
           multiply_row(A, i, A.rows[i].n_lower, x, product);
@@ -189,8 +191,8 @@ namespace Viscoplastic
 
 
 
-    /// y := A x, row by row with the columns of the lower triangle. Without
-    /// four doubles at a time numbers one by one are faster.
+    /// y := A x: the blocks of a row, and their transposes at owned columns.
+    /// Without AVX2, scalar code is faster than vectors of four doubles.
     template <int dim>
     void
     multiply(const SymmetricRows &A,

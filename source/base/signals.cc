@@ -14,7 +14,7 @@ namespace Viscoplastic
 {
   namespace
   {
-    // What a handler may touch.
+    // The only types that a signal handler may write.
     volatile std::sig_atomic_t checkpoint_requested = 0;
     volatile std::sig_atomic_t stop_signal          = 0;
 
@@ -48,7 +48,8 @@ namespace Viscoplastic
         action.sa_handler =
           handled[i] == SIGUSR1 ? request_checkpoint : request_stop;
         sigemptyset(&action.sa_mask);
-        // Reads and writes go on; the second stop meets the default action.
+        // SA_RESTART resumes interrupted reads and writes; SA_RESETHAND gives a
+        // second stop signal its default action.
         action.sa_flags = SA_RESTART;
         if (handled[i] != SIGUSR1)
           action.sa_flags |= SA_RESETHAND;
@@ -71,7 +72,7 @@ namespace Viscoplastic
                         const bool     checkpoint,
                         const bool     is_late) const
   {
-    // A signal between these lines asks for the checkpoint that comes anyway.
+    // A signal between these lines is lost, but a checkpoint is made anyway.
     const bool requested = checkpoint_requested != 0;
     if (requested)
       checkpoint_requested = 0;
@@ -103,7 +104,7 @@ namespace Viscoplastic
 
   namespace
   {
-    /// What the last object says; null if there is none.
+    /// The activity that the innermost object names; null if there is none.
     const std::string *current = nullptr;
 
 
@@ -111,7 +112,7 @@ namespace Viscoplastic
     void
     end(const std::string &event)
     {
-      // One write: several ranks may end at the same time.
+      // Use a single write, since several ranks may end at the same time.
       std::cerr << "viscoplastic_contact: " + event + " while " + *current +
                      "; a law of a shared library may do so.\n";
       std::_Exit(1);

@@ -17,7 +17,7 @@ namespace Viscoplastic
 
   namespace
   {
-    // Measured curves are shorter; this bounds memory.
+    // A bound on memory; measured curves are shorter.
     const std::size_t most_numbers = 10'000'000;
 
 
@@ -37,7 +37,7 @@ namespace Viscoplastic
 
 
 
-    // That muParser takes.
+    // The longest name that muParser accepts.
     const std::size_t longest_name = 100;
 
 
@@ -157,7 +157,7 @@ namespace Viscoplastic
       return y.back();
     if (may_jump())
       return y[next - 1];
-    // The value of a row exactly, and no overflow of differences.
+    // This form is exact at rows and cannot overflow in y[next] - y[next - 1].
     const double share = (argument - x[next - 1]) / (x[next] - x[next - 1]);
     return (1. - share) * y[next - 1] + share * y[next];
   }
@@ -179,7 +179,7 @@ namespace Viscoplastic
   void
   use_tables(const Tables &tables)
   {
-    // deal.II's functions, muParser's own, variables of expressions.
+    // Functions of deal.II and muParser, and variables of expressions.
     std::vector<std::string> taken =
       internal::FunctionParser::get_function_names();
     for (const char *name :

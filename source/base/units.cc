@@ -19,10 +19,10 @@ namespace Viscoplastic
       time_dimension{0., 1., 0.}, stress_dimension{0., 0., 1.},
       force_dimension{2., 0., 1.}, energy_dimension{3., 0., 1.};
 
-    // Also of a calendar's year, in the mean.
+    // The Julian year has 365.25 days.
     constexpr double day = 86400., year = 365.25 * day;
 
-    // What expressions use otherwise (t is no tonne) is not here.
+    // Names that expressions use otherwise are left out: t is time, not tonne.
     const std::vector<Unit> &
     known_units()
     {
@@ -53,7 +53,7 @@ namespace Viscoplastic
         {"kJ", energy_dimension, 1e3},
         {"kg", {1., 2., 1.}, 1.},
         {"K", {0., 0., 0., 1.}, 1.},
-        // A number of particles; in a scene it only divides energies.
+        // Amounts of substance are pure numbers, as they only divide energies.
         {"mol", {}, 1.}};
       return units;
     }
@@ -72,7 +72,7 @@ namespace Viscoplastic
 
 
 
-    /// "length^2"; the name alone for an exponent of 1.
+    /// Return "length^2", or the name alone for an exponent of 1.
     std::string
     power(const std::string &name, const double exponent)
     {
@@ -107,7 +107,7 @@ namespace Viscoplastic
         at = std::min(text.find_first_not_of(' ', at), text.size());
       }
 
-      /// Letters, digits and underscores that begin with a letter.
+      /// Read letters, digits and underscores that begin with a letter.
       std::string
       word()
       {
@@ -119,7 +119,7 @@ namespace Viscoplastic
         return text.substr(begin, at - begin);
       }
 
-      /// Whether a parenthesis makes a function of the word before.
+      /// Whether a parenthesis follows, which makes the word a function.
       bool
       is_call() const
       {
@@ -127,7 +127,7 @@ namespace Viscoplastic
         return i != std::string::npos && text[i] == '(';
       }
 
-      /// The exponent of a unit, `^-5' or `^(-5)'; 1 where there is none.
+      /// Read the exponent of a unit, `^-5' or `^(-5)'; 1 if there is none.
       double
       exponent()
       {
@@ -146,7 +146,7 @@ namespace Viscoplastic
         const bool        closes = !has_parentheses || next() == ')';
         if (std::none_of(digits.begin(), digits.end(), is_digit) || !closes)
           {
-            at = begin; // the expression will say what is wrong
+            at = begin; // the parser of the expression reports the error
             return 1.;
           }
         at += has_parentheses ? 1 : 0;
@@ -156,9 +156,9 @@ namespace Viscoplastic
 
 
 
-    /// The product of units in the parentheses that begin at the cursor, which
-    /// is behind them then; nothing, and the cursor where it was, if they hold
-    /// anything else.
+    /// Read the product of units in the parentheses that begin at the cursor,
+    /// and move the cursor behind them. If they contain anything else, return
+    /// nothing and leave the cursor.
     std::optional<Unit>
     read_group(Cursor &cursor)
     {
@@ -185,7 +185,7 @@ namespace Viscoplastic
                 return result;
               }
             sign = cursor.next() == '/' ? -1. : 1.;
-            // A blank is a product, too.
+            // A blank also stands for a product.
             if (cursor.next() != '/' && cursor.next() != '*')
               {
                 if (cursor.at == end)
@@ -200,7 +200,7 @@ namespace Viscoplastic
 
 
 
-    /// The prefix with which a unit of the SI has this size, or nothing.
+    /// Return the SI prefix for a power of ten, or nothing if there is none.
     std::optional<std::string>
     prefix(const double size)
     {
@@ -222,7 +222,8 @@ namespace Viscoplastic
 
 
 
-    /// The whole text as a unit of the dimension that the entry wants.
+    /// Parse the whole @p text as a unit; refuse another dimension than @p
+    /// wanted.
     Unit
     declared_unit(const std::string &entry,
                   const std::string &text,
@@ -351,8 +352,7 @@ namespace Viscoplastic
             unit = find_unit(name);
             if (unit == nullptr)
               {
-                // Behind a number, or behind a unit, a blank leads to nothing
-                // else.
+                // After a number or a unit and a blank, only a unit can follow.
                 if (sign > 0. && !cursor.is_call())
                   result.unknown_name = name;
                 break;
@@ -375,7 +375,8 @@ namespace Viscoplastic
             ++cursor.at;
             cursor.skip_blanks();
             group = read_group(cursor);
-            // What is no unit may be anything else, unless it looks like one.
+            // A word that is no unit belongs to a larger expression, unless it
+            // resembles the name of a unit.
             Cursor            ahead = cursor;
             const std::string word  = ahead.word();
             if (!group && find_unit(word) == nullptr)
@@ -451,7 +452,8 @@ namespace Viscoplastic
     const auto         power_of_length = [this](const double n) {
       return power(length.name, n);
     };
-    // With a name of its own in three dimensions, and by length in two.
+    // N or J with a prefix if there is one, otherwise a product of stress and
+    // powers of length; per length if @p by_length.
     const auto derived = [&](const char        *unit,
                              const unsigned int n,
                              const bool         by_length) {

@@ -95,7 +95,7 @@ namespace Viscoplastic
                law->history_rate(stress, strain, stiffness, point);
       }
 
-      // A step of the factor's size.
+      // Multiplying rates by the factor is the same as multiplying the step k.
 
       SymmetricTensor<2, 3>
       history_after_step(const SymmetricTensor<2, 3> &stress,
@@ -164,8 +164,7 @@ namespace Viscoplastic
         return law->deviatoric_flow();
       }
 
-      // What is stored and what drives the flow does not depend on how fast it
-      // is.
+      // Stored energy and driving strain do not depend on how fast the flow is.
 
       SymmetricTensor<2, 3>
       driving_strain(const SymmetricTensor<2, 3> &stress,

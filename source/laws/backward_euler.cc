@@ -7,8 +7,8 @@ namespace Viscoplastic
 {
   namespace
   {
-    // Of the continuation, with those that fail. A law without jumps would have
-    // to ask for steps of a thousandth all the way to need more.
+    // The limit on steps of continuation, including failed ones; a law without
+    // jumps needs fewer.
     const unsigned int most_steps_in_k = 1000;
 
 
@@ -19,7 +19,8 @@ namespace Viscoplastic
     ///     sigma_eq + 3 mu k f(sigma_eq) = sigma_eq of the trial stress.
     ///
     /// The left side is convex: Newton's method comes from above after its
-    /// first step. Nothing where the law has no such flow or no value.
+    /// first step. Returns nothing if the body is anisotropic, or if the law
+    /// has no radial flow or no value.
     std::optional<SymmetricTensor<2, 3>>
     radial_return(const BackwardEulerEquation &equation,
                   const SymmetricTensor<2, 3> &start)
@@ -52,7 +53,7 @@ namespace Viscoplastic
 
 
 
-    /// dev a P + vol a I (x) I + along a s (x) s, P the deviator.
+    /// Return dev P + vol I (x) I + along s (x) s, where P takes the deviator.
     SymmetricTensor<4, 3>
     transversal_tensor(const double                 dev,
                        const double                 vol,
@@ -75,15 +76,16 @@ namespace Viscoplastic
 
 
 
-    /// How radial flow shortens the deviator of a trial stress in a step: by
-    /// 1/(1 + a), and changes of it along its direction by 1/(1 + b).
+    /// The factors 1/(1 + a), by which radial flow scales the deviator of a
+    /// trial stress in a step, and 1/(1 + b) for its changes along its
+    /// direction.
     struct RadialFactors
     {
       double                a, b;
       SymmetricTensor<2, 3> direction;
     };
 
-    /// Nothing for other laws and bodies, and where nothing flows.
+    /// Returns nothing for other flow, anisotropic bodies, and without flow.
     std::optional<RadialFactors>
     radial_factors(const ViscoplasticLaw       &law,
                    const SymmetricTensor<2, 3> &stress,
@@ -109,10 +111,10 @@ namespace Viscoplastic
 
 
 
-    /// The tangent where radial_return() has given the stress, and its inverse
-    /// if asked for: dev sigma is that of the trial stress over 1 + a, and
-    /// changes by 1/(1 + b) along itself. Both are definite, since f is convex.
-    /// Nothing for other laws and bodies, and where nothing flows.
+    /// Return the tangent after radial_return(), and its inverse if asked for:
+    /// dev sigma is the deviator of the trial stress over 1 + a, and changes by
+    /// 1/(1 + b) along itself. Both are definite, since f is convex. Nothing is
+    /// returned where radial_factors() returns nothing.
     std::optional<SymmetricTensor<4, 3>>
     radial_tangent(const ViscoplasticLaw       &law,
                    const SymmetricTensor<2, 3> &stress,
@@ -149,7 +151,7 @@ namespace Viscoplastic
                                const LawPoint              &point,
                                const SymmetricTensor<2, 3> &start)
   {
-    // Where a law is steep, the way from zero stress is shorter.
+    // After @p start, zero stress is tried: it is closer where a law is steep.
     const BackwardEulerEquation equation{
       law, strain, old_z, k, stiffness, point};
     if (const auto z = radial_return(equation, start))
@@ -158,8 +160,8 @@ namespace Viscoplastic
       if (const auto z = equation.solve(from))
         return *z;
 
-    // From k = 0, where z = z_old, in steps that adapt. Where the law jumps,
-    // tiny ones succeed without end.
+    // Continuation from k = 0, where z = z_old, with adaptive steps. Where the
+    // law jumps, tiny steps might succeed without end.
     SymmetricTensor<2, 3> z    = old_z;
     double                done = 0., step = 0.25;
     for (unsigned int n = 1; done < 1.; ++n)
@@ -201,7 +203,7 @@ namespace Viscoplastic
     const auto tangents =
       law.step_tangents(stress, strain, k, stiffness, point);
     const SymmetricTensor<4, 3> E = stiffness.tensor();
-    // Exactly, so that a matrix is known to be that of an elastic body.
+    // Return E exactly, so that the matrix of an elastic body is recognized.
     if (tangents.stress.norm() == 0. && tangents.strain.norm() == 0.)
       return E;
     return invert(identity_tensor<3>() - k * tangents.stress) *
@@ -214,8 +216,8 @@ namespace Viscoplastic
   definite_tangent(const SymmetricTensor<4, 3> &tangent,
                    const Stiffness             &stiffness)
   {
-    // Cholesky's factorization of the matrix of components: its sign is that
-    // of the tensor, in whatever basis. Relative to the elastic pivots.
+    // Try Cholesky's factorization of the matrix of components, which is
+    // definite if the tensor is. Pivots are compared with the diagonal of E.
     const auto is_definite = [](const SymmetricTensor<4, 3> &C,
                                 const SymmetricTensor<4, 3> &E) {
       std::array<std::array<double, 6>, 6> factor;

@@ -13,14 +13,14 @@ namespace Viscoplastic
 
   namespace
   {
-    /// A spring, a dashpot and a Kelvin body in series. With s = dev sigma and
-    /// the strain e of the Kelvin body, which the history variables are,
+    /// A spring, a dashpot and a Kelvin body in series. The history variables
+    /// are the strain e of the Kelvin body. With s = dev sigma,
     ///
     ///     e' = (s - 2 G_K e)/(2 eta_K),   G = -E (s/(2 eta_M) + e').
     ///
-    /// In Lubby2 eta_M, G_K and eta_K are those without stress times exp(m
-    /// sigma_eq), exp(k_1 sigma_eq) and exp(k_2 sigma_eq), with sigma_eq of the
-    /// cap beyond it.
+    /// In Lubby2, eta_M, G_K and eta_K are their values at zero stress times
+    /// exp(m sigma_eq), exp(k_1 sigma_eq) and exp(k_2 sigma_eq), where sigma_eq
+    /// is at most the stress cap.
     class Burgers final : public PointwiseLaw<Burgers>
     {
     public:
@@ -72,7 +72,7 @@ namespace Viscoplastic
         return step_tangents(stress, strain, 0., stiffness, point);
       }
 
-      /// After a step e' = (s - 2 G_K e_old)/(2 (eta_K + k G_K)).
+      /// Uses e' = (s - 2 G_K e_old)/(2 (eta_K + k G_K)) after a step.
       Tangents
       step_tangents(const SymmetricTensor<2, 3> &stress,
                     const SymmetricTensor<2, 3> & /*strain*/,
@@ -111,8 +111,8 @@ namespace Viscoplastic
         return is_linear;
       }
 
-      /// The largest eigenvalue of the matrix of sigma and e, in which what
-      /// turns with the stress of Lubby2 counts by its norm.
+      /// The largest eigenvalue of a 2 x 2 matrix for sigma and e, in which the
+      /// stress dependence of the coefficients of Lubby2 enters by norms.
       double
       relaxation_rate(const SymmetricTensor<2, 3> &stress,
                       const SymmetricTensor<2, 3> & /*strain*/,
@@ -174,7 +174,7 @@ namespace Viscoplastic
       }
 
     private:
-      // In the order of read(). Without the last four, they are zero.
+      // In the order of read(). The last four stay zero in the linear law.
       enum
       {
         maxwell_viscosity,

@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-// The laws of contact with all that they have: a new one is a row here.
+// The registry of contact laws and friction laws: a new law is a row here.
 
 namespace Viscoplastic
 {

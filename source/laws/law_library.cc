@@ -12,8 +12,7 @@ namespace Viscoplastic
 {
   namespace
   {
-    /// What the loader says of the last failure, without the name of the file
-    /// that it begins with.
+    /// Return the message of dlerror() without the leading name of the file.
     std::string
     loader_message(const std::string &file)
     {
@@ -27,7 +26,7 @@ namespace Viscoplastic
 
 
 
-    /// `elastic', which is no law, is taken as well.
+    /// Throw unless @p name is valid and not taken, as `elastic' is, too.
     void
     check_name(const std::string                 &name,
                const std::vector<LawDescription> &others,
@@ -60,8 +59,8 @@ namespace Viscoplastic
   {
     const UnexpectedEnd unexpected_end("loading the shared library '" + file +
                                        "'");
-    // All symbols at once: a function that is missing must not end a run in the
-    // middle. What is loaded stays, since laws are used until the end.
+    // RTLD_NOW resolves all symbols, so that a missing function cannot end a
+    // run later. The library stays loaded, since laws are used until the end.
     void *library = dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL);
     AssertThrow(library != nullptr,
                 ExcMessage(

@@ -19,7 +19,7 @@ namespace Viscoplastic
     ///     f = A sigma_eq^n                             up to the cap c,
     ///     f = A c^n + A n c^(n-1) (sigma_eq - c)       beyond:
     ///
-    /// the tangent there, without which G were not Lipschitz.
+    /// the tangent at c, since G has to be Lipschitz.
     class Norton final : public RadialLaw<Norton>
     {
     public:
@@ -84,8 +84,8 @@ namespace Viscoplastic
                    1. / point.parameters[exponent]);
       }
 
-      /// x^m; most exponents of laws are whole numbers, whose powers are a few
-      /// products.
+      /// Return x^m, by a few products for the whole numbers that most
+      /// exponents are.
       static double
       power(double x, const double m)
       {

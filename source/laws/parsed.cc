@@ -28,7 +28,7 @@ namespace Viscoplastic
             "sigma_eq,p,eps_eq,T")
         , name(section.path + "/Strain rate")
       {
-        // What has no value at rest has none at the start of most runs.
+        // Most runs start at rest: refuse an expression without a value there.
         if (!f.depends_on_additional_variable())
           strain_rate(Point<3>(), LawPoint());
       }
@@ -53,7 +53,7 @@ namespace Viscoplastic
            const LawPoint              &point) const override
       {
         const Point<3> state = invariants(stress, strain, stiffness);
-        // Without a direction there is no flow.
+        // Flow has no direction if the deviator is zero.
         if (state[0] == 0)
           return {};
         return stiffness.stress(-1.5 * point.parameters[factor] *
@@ -105,9 +105,9 @@ namespace Viscoplastic
           slopes(invariants(stress, strain, stiffness), stiffness, point);
         const double largest = stiffness.largest_deviatoric_eigenvalue();
 
-        // Hardening is a term of rank one, bounded in the norm of E^-1 as for
-        // perzyna; so is that of pressure, which deviatoric flow does not
-        // change unless the body is anisotropic.
+        // The hardening term has rank one and is bounded in the norm of E^-1 as
+        // in perzyna.cc. So is the pressure term, which is zero in isotropic
+        // bodies, where deviatoric flow does not change the pressure.
         double result =
           1.5 * largest * std::max(slope.by[0], slope.secant) +
           std::fabs(slope.by[2]) *
@@ -135,7 +135,7 @@ namespace Viscoplastic
       const Expression<3> f;
       const std::string   name;
 
-      /// sigma_eq, p, eps_eq.
+      /// Return (sigma_eq, p, eps_eq).
       static Point<3>
       invariants(const SymmetricTensor<2, 3> &stress,
                  const SymmetricTensor<2, 3> &strain,
@@ -161,7 +161,7 @@ namespace Viscoplastic
         return value;
       }
 
-      /// F f/sigma_eq, and F times the derivatives of f.
+      /// F f/sigma_eq, and F times the derivatives of f by the invariants.
       struct Slopes
       {
         double                secant = 0.;
@@ -173,8 +173,9 @@ namespace Viscoplastic
              const Stiffness &stiffness,
              const LawPoint  &point) const
       {
-        // Steps that balance truncation and rounding of central differences,
-        // not below what is a small stress or strain for this body.
+        // The steps of central differences balance truncation and rounding;
+        // their lower bound at rest is small for stresses or strains of this
+        // body.
         const Point<3> floor(1e-6 * stiffness.shear_modulus(),
                              1e-6 * stiffness.shear_modulus(),
                              1e-6);

@@ -40,7 +40,7 @@ namespace Viscoplastic
         const SymmetricTensor<2, 3> s      = deviator(stress);
         const double                length = s.norm();
         const double R = radius(stress, strain, stiffness, point);
-        // In this sense of the comparison a NaN goes on, and is seen.
+        // Written so that NaN ends up in the result.
         if (length <= R)
           return {};
         return stiffness.stress((1 - R / length) /
@@ -60,8 +60,8 @@ namespace Viscoplastic
         if (length <= R && R > 0)
           return tangents;
 
-        // Along s the excess grows one to one; across s it only turns. With
-        // R = 0 it does not matter what e is, and |s| may be zero.
+        // The excess |s| - R grows with s along s; across s it only turns. With
+        // R = 0 the direction e does not matter, and |s| may be zero.
         const SymmetricTensor<4, 3> E     = stiffness.tensor();
         const double                ratio = R > 0 ? R / length : 0.;
         SymmetricTensor<2, 3>       e;
@@ -99,9 +99,9 @@ namespace Viscoplastic
                       const Stiffness &stiffness,
                       const LawPoint  &point) const override
       {
-        // Not zero inside K: the next step may begin outside. Flow that
-        // enlarges K shortens the excess from both sides; the bound is that of
-        // the rank one term E e (x) E^-1 n in the norm of E^-1.
+        // The rate is not zero inside K, since the next step may begin outside.
+        // Hardening also reduces the excess: its rank-one term E e (x) E^-1 n
+        // is bounded in the norm of E^-1.
         const double largest = stiffness.largest_deviatoric_eigenvalue();
         return (largest +
                 std::sqrt(2. / 3.) * point.parameters[hardening] *

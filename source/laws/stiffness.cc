@@ -71,8 +71,8 @@ namespace Viscoplastic
         {
           const std::string row    = std::to_string(i + 1),
                             column = std::to_string(j + 1);
-          // Rounding of matrices that a program has written is no asymmetry.
-          // Written so that NaN is refused, too.
+          // The tolerance allows for rounding in the text of the matrix. The
+          // comparison also refuses NaN.
           AssertThrow(std::fabs(voigt(i, j) - voigt(j, i)) <= 1e-8 * scale &&
                         std::isfinite(scale),
                       ExcMessage("The Voigt matrix has " +
@@ -87,7 +87,7 @@ namespace Viscoplastic
                      least_modulus,
                      largest_modulus);
 
-    // With engineering shears, Voigt's matrix holds the components themselves.
+    // Voigt's matrix for engineering shears contains the tensor components.
     constexpr std::array<std::pair<unsigned int, unsigned int>, 6> axes = {
       {{0, 0}, {1, 1}, {2, 2}, {1, 2}, {0, 2}, {0, 1}}};
     auto data = std::make_shared<Anisotropic>();

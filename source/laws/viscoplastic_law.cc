@@ -55,7 +55,7 @@ namespace Viscoplastic
     , text(section.prm.get(entry))
     , range(range)
   {
-    // A z in a plane scene gets the message of any unknown symbol.
+    // In a plane scene, z is refused like any unknown symbol.
     if (section.dim == 2)
       Expression<2>(text, name, "x,y,T");
     expression = std::make_shared<Expression<3>>(text, name, "x,y,z,T");
@@ -204,8 +204,8 @@ namespace Viscoplastic
     for (unsigned int iteration = 0; iteration < 50 && std::isfinite(F.norm());
          ++iteration)
       {
-        // The scale of each variable is its own, of one without any that of
-        // all.
+        // Differences have the scale of each variable, or the common scale of
+        // all if a variable is zero.
         const SymmetricTensor<2, 3> from = alpha;
         const double scale = from.norm() + point.history->norm() + F.norm();
         if (F.norm() <= 1e-14 * scale)
@@ -236,7 +236,7 @@ namespace Viscoplastic
             if (F.norm() < before)
               break;
           }
-        if (!(F.norm() < before)) // what rounding leaves, or nothing
+        if (!(F.norm() < before)) // stagnation
           {
             if (before <= 1e-10 * scale)
               return from;
@@ -269,7 +269,7 @@ namespace Viscoplastic
           SymmetricTensor<2, 3> left = at, right = at;
           left.access_raw_entry(j) -= h;
           right.access_raw_entry(j) += h;
-          // Both of the entries of a shear change.
+          // A raw shear entry stands for two tensor entries: halve the slope.
           const SymmetricTensor<2, 3> slope =
             (G(right) - G(left)) / ((j < 3 ? 2. : 4.) * h);
           for (unsigned int i = 0; i < 6; ++i)

@@ -22,7 +22,7 @@ namespace Viscoplastic
       relaxation_time
     };
 
-    /// E_inf; not if Young's modulus is zero.
+    /// Return E_inf; Young's modulus must not be zero.
     Stiffness
     long_term(const LawPoint &point)
     {
@@ -30,7 +30,7 @@ namespace Viscoplastic
                                   point.parameters[poissons_ratio]);
     }
 
-    /// E_inf eps.
+    /// Return E_inf eps.
     SymmetricTensor<2, 3>
     long_term_stress(const SymmetricTensor<2, 3> &strain, const LawPoint &point)
     {
@@ -41,8 +41,9 @@ namespace Viscoplastic
 
 
 
-    /// B = E - E_inf. Where E_inf = E, rounding is what is left of B: equal
-    /// moduli may come out of different formulas.
+    /// The stiffness B = E - E_inf of the spring that relaxes. Where E_inf = E,
+    /// B is not exactly zero, since equal moduli may come from different
+    /// formulas.
     class SecondSpring
     {
     public:
@@ -66,14 +67,14 @@ namespace Viscoplastic
             SymmetricTensor<4, 3> B = E.tensor();
             if (!all_relaxes)
               B -= long_term(point).tensor();
-            // Eigenvectors take twenty times longer.
+            // Eigenvectors take twenty times longer than a factorization.
             if (!factorize(B))
               modes = spectrum(B);
           }
       }
 
-      /// The smallest eigenvalue of B; infinite if none is below the tolerance
-      /// and it is not known.
+      /// The smallest eigenvalue of B, or infinity if B could be factorized,
+      /// for which its eigenvalues are not computed.
       double
       smallest_eigenvalue() const
       {
@@ -89,7 +90,7 @@ namespace Viscoplastic
         return smallest_eigenvalue() > tolerance;
       }
 
-      /// B^-1 q, without modes that do not relax.
+      /// Return B^-1 q without the modes that do not relax.
       SymmetricTensor<2, 3>
       strain(const SymmetricTensor<2, 3> &q) const
       {
@@ -123,14 +124,14 @@ namespace Viscoplastic
                 for (unsigned int k = i + 1; k < 6; ++k)
                   x[i] -= factor[k][i] * x[k];
                 x[i] /= factor[i][i];
-                // engineering shears
+                // x has engineering shears
                 result.access_raw_entry(i) = i < 3 ? x[i] : x[i] / 2;
               }
           }
         return result;
       }
 
-      /// The part of a tensor in the modes that do not relax.
+      /// Return the part of a tensor in the modes that do not relax.
       SymmetricTensor<2, 3>
       without_spring(const SymmetricTensor<2, 3> &tensor) const
       {
@@ -152,8 +153,8 @@ namespace Viscoplastic
       const double tolerance;
 
     private:
-      /// Cholesky's, of the matrix of components, which takes engineering
-      /// shears. Whether all pivots are beyond the tolerance.
+      /// Cholesky's factorization of the matrix of components, which maps
+      /// engineering shears. Returns whether all pivots exceed the tolerance.
       bool
       factorize(const SymmetricTensor<4, 3> &B)
       {
@@ -175,7 +176,7 @@ namespace Viscoplastic
 
       const bool isotropic;
       double     mu, bulk;
-      // Of others: of the factor there is no need where a mode has no spring.
+      // For anisotropic B: its Cholesky factor or, if B is singular, its modes.
       std::array<std::array<double, 6>, 6> factor;
       std::optional<Spectrum>              modes;
     };
@@ -190,8 +191,8 @@ namespace Viscoplastic
     ///     1/2 E_inf eps : eps + 1/2 B^-1 q : q.
     ///
     /// A mode that does not relax, e.g. the volumetric one where K_inf = K, has
-    /// no second spring, and there q is but what is left of an initial stress.
-    /// With the part q_N of q in these modes the energy has
+    /// no second spring, and q is what remains of an initial stress in it. With
+    /// the part q_N of q in these modes the energy has
     ///
     ///     q_N : eps + 1/2 E^-1 q_N : q_N
     ///
@@ -235,7 +236,7 @@ namespace Viscoplastic
                 "; it must not be below the long-term one.";
         else if (stiffness.is_isotropic())
           {
-            // mu_inf <= mu and K_inf <= K, in numbers of four digits.
+            // From mu_inf <= mu and K_inf <= K, rounded inwards to four digits.
             const double least = E_inf / (2. * stiffness.shear_modulus()) - 1.,
                          most  = 0.5 - E_inf / (6. * stiffness.bulk_modulus());
             why = "with this Young's modulus the ratio must be at least " +
@@ -303,8 +304,8 @@ namespace Viscoplastic
         return false;
       }
 
-      /// B^-1 q, the strain of the second spring, and of eps + E^-1 q_N the
-      /// part in the modes without one.
+      /// B^-1 q, the strain of the second spring, plus the part of eps + E^-1
+      /// q_N in the modes without a second spring.
       SymmetricTensor<2, 3>
       driving_strain(const SymmetricTensor<2, 3> &stress,
                      const SymmetricTensor<2, 3> &strain,

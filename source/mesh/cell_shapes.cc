@@ -11,8 +11,8 @@ namespace Viscoplastic
   CellShapes<dim>::add(
     const typename DoFHandler<dim>::active_cell_iterator &cell)
   {
-    // Vertices from the first, relative to the diameter and rounded: equal for
-    // translated cells, whatever rounding did to their vertices.
+    // Vertices relative to the first one, divided by the diameter and rounded,
+    // are equal for translated cells despite rounding errors.
     constexpr double                   resolution = 1ll << 36;
     std::array<std::int64_t, key_size> key{};
     int                                exponent;

@@ -7,11 +7,11 @@ namespace Viscoplastic
 {
   namespace
   {
-    // Estimates that differ by less than this belong together if need be.
+    // Values within this relative distance may end up on either side.
     constexpr double window = 0.01;
 
-    /// Return the sorted @p values without those whose neighbors on both sides
-    /// are near: no gap worth looking at begins or ends there.
+    /// Remove values whose neighbors on both sides are @p near from the sorted
+    /// @p values, since no wide gap begins or ends there.
     std::vector<double>
     ends_of_gaps(const std::vector<double> &values, const double near)
     {
@@ -34,7 +34,7 @@ namespace Viscoplastic
                     const MPI_Comm                         communicator)
   {
     std::sort(values.begin(), values.end());
-    // weight of the values from here on
+    // weights[i] is the sum of the weights of values i and above.
     std::vector<double> weights(values.size() + 1, 0.);
     for (std::size_t i = values.size(); i-- > 0;)
       weights[i] = weights[i + 1] + values[i].second;

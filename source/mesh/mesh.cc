@@ -33,14 +33,14 @@ namespace Viscoplastic
                       file.cells.size(),
                       "The mesh file '" + geometry.file + "'",
                       triangulation.get_communicator());
-      // From nodes around a face to deal.II's lexicographic order.
+      // Converts the order of a walk around a face to lexicographic order.
       constexpr std::array<unsigned int, 8> order{{0, 1, 3, 2, 4, 5, 7, 6}};
 
       std::vector<Point<dim>> vertices(file.nodes.size());
       for (std::size_t n = 0; n < file.nodes.size(); ++n)
         for (unsigned int d = 0; d < dim; ++d)
           vertices[n][d] = file.nodes[n][d];
-      // Both of cells and of faces.
+      // Set the vertices of a cell or of a face.
       const auto set_vertices = [&](auto &object, const auto &element) {
         for (std::size_t n = 0; n < object.vertices.size(); ++n)
           object.vertices[n] = element.nodes[order[n]];
@@ -158,14 +158,14 @@ namespace Viscoplastic
                              Point<dim>        &place,
                              const Point<dim>  &middle,
                              const double       size) {
-          // Rounding moves nothing.
+          // Ignore differences by rounding.
           if (place.distance(middle) > 1e-12 * size)
             {
               place            = middle;
               is_moved[vertex] = true;
             }
         };
-        // From coarse to fine: the ends of an edge may hang themselves.
+        // Coarse cells first: the ends of an edge may be hanging themselves.
         for (unsigned int level = 0; level < triangulation.n_levels(); ++level)
           for (const auto &cell :
                triangulation.active_cell_iterators_on_level(level))
@@ -187,7 +187,8 @@ namespace Viscoplastic
                         face->diameter());
             }
 
-        // Those of ghosts may hang on cells that are not known here.
+        // Vertices of ghost cells may hang on cells that this rank does not
+        // know: take their places from the owners.
         const std::vector<bool> is_owned =
           GridTools::get_locally_owned_vertices(triangulation);
         for (std::size_t v = 0; v < is_moved.size(); ++v)
@@ -212,18 +213,18 @@ namespace Viscoplastic
 
     private:
       parallel::distributed::Triangulation<dim> &triangulation;
-      /// Where manifolds have put what is moved, by index.
+      /// The places that manifolds give to the moved vertices, by index.
       std::map<unsigned int, Point<dim>> places;
     };
 
 
 
-    /// Where manifolds curve a mesh, let each hanging vertex stand in the
-    /// middle of the edge or face of the coarser cell, now and after all
-    /// refinements to come. A manifold puts it beside that edge or face, whose
-    /// cell has straight edges: the cells of both sides would overlap or leave
-    /// a gap, and what is continuous at nodes would not be so between them.
-    /// Refinement itself starts from the places that manifolds give. Does
+    /// On meshes with curved manifolds, move each hanging vertex to the center
+    /// of the edge or face of the coarser cell, here and after each later
+    /// refinement. The manifold puts it beside that edge or face, which is
+    /// straight in the coarser cell: cells would overlap or leave a gap, and
+    /// functions that are continuous at nodes would not be so between them.
+    /// Refinement itself starts from the places given by manifolds. Does
     /// nothing without manifolds. Collective.
     template <int dim>
     void

@@ -16,9 +16,10 @@ namespace Viscoplastic
 {
   namespace
   {
-    /// Return the least value in the cell, at its vertices and Gauss points, of
-    /// the determinant of the Jacobian divided by the lengths of its columns: 1
-    /// in a box, the sine of the angle in a parallelogram.
+    /// Return the scaled Jacobian of a cell: the minimum over its vertices and
+    /// Gauss points of the determinant of the Jacobian matrix divided by the
+    /// lengths of its columns (1 in a box, the sine of the angle in a
+    /// parallelogram).
     template <int dim, typename CellIterator>
     double
     least_scaled_jacobian(const CellIterator            &cell,
@@ -35,7 +36,7 @@ namespace Viscoplastic
           double scale = 1.;
           for (unsigned int d = 0; d < dim; ++d)
             scale *= transpose(jacobian)[d].norm();
-          // Neither coinciding vertices nor coordinates beyond all measure.
+          // The scale is zero if vertices coincide, and may overflow.
           if (!(scale > 0.) || !std::isfinite(scale))
             return 0.;
           least = std::min(least, determinant(jacobian) / scale);
@@ -45,8 +46,8 @@ namespace Viscoplastic
 
 
 
-    /// Check the lengths of the coarse cells, which all ranks know; those of
-    /// refined meshes are not smaller by orders of magnitude that matter.
+    /// Check the lengths of the coarse cells, which all ranks know. Refinement
+    /// does not change their orders of magnitude enough to matter.
     template <int dim>
     void
     check_lengths(
@@ -70,7 +71,7 @@ namespace Viscoplastic
                        largest,
                        -largest_length,
                        largest_length);
-      // Vertices that coincide are refused as such.
+      // Coinciding vertices are refused by check_cells().
       if (smallest > 0.)
         require_in_range("The size of the smallest cell",
                          smallest,
@@ -101,7 +102,7 @@ namespace Viscoplastic
               }
           }
 
-      // Beyond rounding of coordinates with single precision.
+      // Above the rounding errors of coordinates in single precision.
       const double limit   = 1e-6;
       const auto   extreme = Utilities::MPI::min_max_avg(worst, comm);
       if (extreme.min > limit)
@@ -169,8 +170,8 @@ namespace Viscoplastic
     const MPI_Comm comm = triangulation.get_communicator();
     check_lengths(triangulation);
     check_cells<dim>(triangulation.cell_iterators_on_level(0), comm);
-    // What is refined along straight lines keeps its shape; that on curved
-    // boundaries is moved.
+    // Refinement along straight lines keeps the shape of cells, but new
+    // vertices on curved boundaries are moved.
     if (triangulation.n_global_levels() > 1)
       check_cells<dim>(triangulation.active_cell_iterators(), comm);
   }

@@ -17,22 +17,22 @@ namespace Viscoplastic
 {
   namespace
   {
-    /// The boundary ids of the second of several bodies begin with this.
+    /// Boundary ids of body b (counted from 0) begin with b times this.
     constexpr types::boundary_id ids_per_body = 20;
 
 
 
-    /// Which arguments of a generator, counted from 0, are numbers of cells.
+    /// The arguments of a generator, counted from 0, that are numbers of cells.
     struct CellCounts
     {
       std::vector<std::size_t> arguments;
       enum
       {
-        /// Each multiplies the number of cells.
+        /// The number of cells is their product.
         product,
-        /// The one there is does so once a direction.
+        /// The number of cells is the dim-th power of the only one.
         power,
-        /// They are added to each other.
+        /// The number of cells is their sum.
         sum
       } kind = product;
     };
@@ -59,8 +59,8 @@ namespace Viscoplastic
 
 
 
-    /// Check the numbers of cells: deal.II takes negative ones for huge ones,
-    /// and asks for all the memory that huge ones need.
+    /// Check the numbers of cells: deal.II converts negative ones to huge ones,
+    /// and tries to allocate the memory for huge ones.
     void
     check_numbers_of_cells(const GeometryParameters &geometry,
                            const unsigned int        dim,
@@ -78,16 +78,16 @@ namespace Viscoplastic
       for (const std::size_t place : counts.arguments)
         {
           if (place >= arguments.size())
-            return; // deal.II says it
+            return; // deal.II reports it
           numbers += (numbers.empty() ? "" : ", ") + arguments[place];
           for (const std::string &text :
                Utilities::split_string_list(arguments[place], ','))
             {
               const auto value = number_of(text);
               if (!value)
-                return; // deal.II says it
+                return; // deal.II reports it
               is_negative = is_negative || *value < 0.;
-              // Where zero is possible, deal.II chooses a small number.
+              // Zero, where allowed, lets deal.II choose a small number.
               if (counts.kind == CellCounts::sum)
                 total += *value;
               else
@@ -111,8 +111,7 @@ namespace Viscoplastic
 
 
 
-    /// Return the numbers in a list that is separated by commas; none if one of
-    /// them is no number.
+    /// Return the numbers in a list; an empty one if any is no number.
     std::vector<double>
     list_of_numbers(const std::string &text)
     {
@@ -129,10 +128,10 @@ namespace Viscoplastic
 
 
 
-    /// Check the arguments of a box: deal.II takes what is not a list of whole
-    /// numbers of cells for lists of step sizes, one a direction, and in
-    /// release mode compares neither their number nor that of the numbers of
-    /// cells with the dimension.
+    /// Check the arguments of a box: deal.II takes anything but a list of whole
+    /// numbers of cells for lists of step sizes, one per direction, and checks
+    /// neither the number of lists nor the length of the list of numbers in
+    /// release mode.
     void
     check_box(const GeometryParameters &geometry, const unsigned int dim)
     {
@@ -140,7 +139,7 @@ namespace Viscoplastic
         Utilities::split_string_list(geometry.arguments, ':');
       if (geometry.generator != "subdivided_hyper_rectangle" ||
           arguments.size() < 3)
-        return; // deal.II says it
+        return; // deal.II reports it
       const auto lists = Utilities::split_string_list(arguments[0], ';');
       const auto refuse_unless = [&](const bool good, const std::string &what) {
         AssertThrow(good,
@@ -166,7 +165,7 @@ namespace Viscoplastic
       const std::vector<double> first = list_of_numbers(arguments[1]),
                                 last  = list_of_numbers(arguments[2]);
       if (first.size() != dim || last.size() != dim)
-        return; // deal.II says it
+        return; // deal.II reports it
       for (unsigned int d = 0; d < dim; ++d)
         {
           const std::vector<double> steps  = list_of_numbers(lists[d]);
@@ -186,12 +185,11 @@ namespace Viscoplastic
 
 
 
-    /// Turn the cells of a coarse mesh so that each line runs the same way in
-    /// all of them; what that is not possible for (a Moebius strip) stays.
-    /// Where lines run against each other (in a quarter of a ball), p4est keeps
-    /// the balance of refined meshes in 3D differently from deal.II, whose
-    /// cells are then no longer those of p4est: some refinements end in a
-    /// crash.
+    /// Reorder the vertices of the cells of a coarse mesh so that each line has
+    /// the same direction in all cells; meshes for which this is impossible (a
+    /// Moebius strip) stay. Without consistent directions (in a quarter of a
+    /// ball), p4est balances refined 3D meshes differently from deal.II, so
+    /// that their cells differ: some refinements end in a crash.
     void
     orient_cells(parallel::distributed::Triangulation<3> &triangulation)
     {
@@ -220,7 +218,8 @@ namespace Viscoplastic
           manifolds[id] = triangulation.get_manifold(id).clone();
       triangulation.clear();
       triangulation.create_triangulation(vertices, cells, faces);
-      // Those that interpolate others belong to the mesh that was cleared.
+      // Transfinite manifolds refer to the triangulation and to other
+      // manifolds: set them last and initialize them again.
       using Interpolation = TransfiniteInterpolationManifold<3>;
       for (const bool interpolates : {false, true})
         for (const auto &[id, manifold] : manifolds)
@@ -252,7 +251,7 @@ namespace Viscoplastic
         }
       catch (const std::exception &exception)
         {
-          // deal.II describes types of C++ at length where they do not fit.
+          // deal.II's messages on wrong arguments are long lists of C++ types.
           std::string why = reason(exception);
           if (why.find("does not match the pattern") != std::string::npos)
             why = "they must be separated by colons and of the types that "
@@ -272,7 +271,7 @@ namespace Viscoplastic
 
 
 
-    /// Bodies side by side, whose nodes stay apart where they touch.
+    /// Generate several bodies in one mesh, without common nodes.
     template <int dim>
     void
     generate_bodies(const GeometryParameters                  &geometry,
@@ -297,7 +296,7 @@ namespace Viscoplastic
           of_body.arguments          = arguments[b];
           Triangulation<dim> body;
           generate_body(of_body, triangulation.get_communicator(), body);
-          // Ids of manifolds become numbers in the list.
+          // Manifold ids become indices into the common list `manifolds`.
           std::map<types::manifold_id, types::manifold_id> new_id{
             {numbers::flat_manifold_id, numbers::flat_manifold_id}};
           for (const types::manifold_id id : body.get_manifold_ids())

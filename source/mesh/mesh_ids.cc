@@ -20,7 +20,7 @@ namespace Viscoplastic
 {
   namespace
   {
-    /// The function of `Boundary ids' or `Material ids'.
+    /// The expression of `Boundary ids' or `Material ids'.
     template <int dim>
     class IdExpression
     {
@@ -40,7 +40,8 @@ namespace Viscoplastic
                  const unsigned int                       old_id,
                  const std::string                       &what)
       {
-        // At the center, and near the corners, which neighbors share.
+        // Evaluate at the center and near, not at, corners: neighbors share
+        // these.
         Point<structdim> xi;
         for (unsigned int d = 0; d < structdim; ++d)
           xi[d] = 0.5;
@@ -97,7 +98,7 @@ namespace Viscoplastic
             if (cell->at_boundary(f))
               {
                 const auto face = cell->face(f);
-                // With the edges, as the generators do.
+                // Also set the ids of edges, as the generators do.
                 face->set_all_boundary_ids(
                   id(*face, face->boundary_id(), "face"));
               }
@@ -173,8 +174,8 @@ namespace Viscoplastic
 
   namespace
   {
-    /// The angle in degrees between unit vectors of this distance; an arc
-    /// cosine knows none below 1e-8.
+    /// Return the angle in degrees between unit vectors at a distance @p chord;
+    /// the arc cosine of their product cannot resolve angles below 1e-8.
     double
     angle_of_chord(const double chord)
     {
@@ -225,12 +226,12 @@ namespace Viscoplastic
     });
     sum  = Utilities::MPI::sum(sum, comm);
     area = Utilities::MPI::sum(area, comm);
-    // All around a body the normals cancel.
+    // The normals cancel, as all around a body.
     if (sum.norm() <= 1e-10 * area)
       return {Tensor<1, dim>(), 180.};
 
     PieceNormal<dim> result{sum / sum.norm(), 0.};
-    // Exact axes keep the nodal frames of axis-parallel bodies trivial.
+    // Exact axes keep the rotated frames at nodes trivial.
     for (unsigned int d = 0; d < dim; ++d)
       if (std::abs(std::abs(result.normal[d]) - 1.) < 1e-12)
         {
@@ -254,7 +255,7 @@ namespace Viscoplastic
   largest_angle(const parallel::distributed::Triangulation<dim> &triangulation,
                 const types::boundary_id                         id)
   {
-    // Ghosts are all cells around a vertex of an owned one.
+    // Ghost cells complete the cells around each vertex of an owned cell.
     std::map<unsigned int, std::vector<Tensor<1, dim>>> normals;
     double                                              chord = 0.;
     for (const auto &cell : triangulation.active_cell_iterators())

@@ -12,8 +12,8 @@ namespace Viscoplastic
 {
   namespace
   {
-    /// Number of owned parents all of whose children are to be removed. Ranks
-    /// own siblings together.
+    /// Return the number of owned parents whose children are all to be removed;
+    /// siblings belong to the same rank.
     template <int dim>
     unsigned int
     n_coarsened_parents(
@@ -33,8 +33,8 @@ namespace Viscoplastic
 
 
 
-    /// Flag the cells with the largest estimates that make up a fraction of
-    /// their sum for refinement, and those with the smallest for coarsening.
+    /// Flag the cells with the largest estimates that make up a fraction of the
+    /// sum for refinement, and those with the smallest ones for coarsening.
     template <int dim>
     void
     flag_fractions(parallel::distributed::Triangulation<dim> &triangulation,
@@ -52,8 +52,8 @@ namespace Viscoplastic
         }
       total = Utilities::MPI::sum(total, comm);
 
-      // A sum that hits the fraction exactly, as of equal cells, has reached
-      // it, whatever rounding says.
+      // The slack lets sums that equal the fraction up to rounding, as on
+      // meshes of equal cells, reach it.
       const double slack        = 1e-3;
       const double refined      = parameters.refinement_fraction;
       const double coarsened    = parameters.coarsening_fraction;
@@ -83,8 +83,8 @@ namespace Viscoplastic
 
 
 
-    /// Withdraw the smallest of the marked cells until at most @p n_allowed of
-    /// all ranks are left.
+    /// Clear the refinement flags with the smallest estimates until at most @p
+    /// n_allowed flags are left on all ranks together.
     template <int dim>
     void
     limit_refinement(parallel::distributed::Triangulation<dim> &triangulation,
@@ -107,7 +107,7 @@ namespace Viscoplastic
 
 
 
-    /// Whether the marked cells are worth a new mesh.
+    /// Return whether the change of the mesh is worth its cost.
     template <int dim>
     bool
     is_worth_it(const parallel::distributed::Triangulation<dim> &triangulation,
@@ -201,7 +201,7 @@ namespace Viscoplastic
     const double                               ratio,
     const std::function<void()>               &limit_coarsening)
   {
-    // The squared estimate of cells of twice the size is four times as large.
+    // Cells of twice the size have four times the squared estimate.
     const double aim = 0.85, coarsen_below = 0.6, square = ratio * ratio;
     RefinementParameters chosen(parameters);
     chosen.refinement_fraction = 0.;
@@ -212,8 +212,8 @@ namespace Viscoplastic
           std::min(0.6, (1. - aim * aim / square) / 0.75);
         if (limit_coarsening)
           chosen.coarsening_fraction = 0.05 / (3. * square);
-        // Neither for coarser cells alone, nor for the few that bounds on the
-        // level or the number of cells have left of what was wanted.
+        // Do not change the mesh for coarsening alone, nor if the limits on
+        // levels and cells leave few cells to be refined.
         chosen.smallest_share = 0.1;
       }
     else if (ratio < coarsen_below && limit_coarsening)

@@ -17,7 +17,7 @@ namespace Viscoplastic
 {
   namespace
   {
-    /// Parse `Boundary refinements': how often to refine, by boundary id.
+    /// Parse `Boundary refinements': the number of refinements by boundary id.
     template <int dim>
     std::map<types::boundary_id, unsigned int>
     boundary_refinements(
@@ -32,7 +32,7 @@ namespace Viscoplastic
       for (const std::string &part : Utilities::split_string_list(text, ','))
         {
           std::smatch match;
-          // Matching takes a stack as deep as the text is long.
+          // std::regex needs a stack as deep as the text is long.
           AssertThrow(
             part.size() < 100 && std::regex_match(part, match, pair),
             ExcMessage(entry +
@@ -53,8 +53,8 @@ namespace Viscoplastic
 
 
 
-    /// Estimate from below how many cells there will be: each face brings a
-    /// cell to be halved, and 2^(dim-1) faces in its place.
+    /// Return a lower bound of the number of cells: in each pass, each face has
+    /// a cell that is refined, and is replaced by 2^(dim-1) faces.
     template <int dim>
     double
     n_cells_after(
@@ -93,7 +93,7 @@ namespace Viscoplastic
       times =
         boundary_refinements(geometry.boundary_refinements, triangulation);
 
-    // Halving is exact and indices suffice up to here.
+    // Up to this level, halving is exact and indices suffice.
     const unsigned int global = geometry.global_refinements;
     unsigned int       local  = 0;
     for (const auto &pair : times)
@@ -124,7 +124,7 @@ namespace Viscoplastic
                       comm);
     for (unsigned int pass = 0; pass < local; ++pass)
       {
-        // A cell may touch the boundary in a vertex or an edge only.
+        // Include cells that touch the boundary in a vertex or an edge only.
         std::vector<bool> touches(triangulation.n_vertices(), false);
         for (const auto &cell : triangulation.active_cell_iterators())
           if (!cell->is_artificial())
@@ -168,8 +168,8 @@ namespace Viscoplastic
 
 
 
-    /// Clear the flags of owned families that are not to go as a whole. Ranks
-    /// own siblings together.
+    /// Clear the coarsening flags of owned families that are not to be
+    /// coarsened as a whole; siblings belong to the same rank.
     template <int dim>
     void
     keep_incomplete_families(
@@ -189,7 +189,7 @@ namespace Viscoplastic
 
 
 
-    /// Give ghosts the flags that their owners have set. Collective.
+    /// Copy the flags of cells from their owners to ghost cells. Collective.
     template <int dim>
     void
     exchange_flags(parallel::distributed::Triangulation<dim> &triangulation)
@@ -211,7 +211,7 @@ namespace Viscoplastic
           if (mark == static_cast<unsigned int>(Mark::refined))
             cell->set_refine_flag();
           else if (mark == static_cast<unsigned int>(Mark::coarsened))
-            // The whole family, some of which may be out of sight.
+            // Flag the whole family, some of which may not be ghost cells.
             for (const auto &sibling : cell->parent()->child_iterators())
               if (sibling->is_active() && !sibling->is_locally_owned())
                 sibling->set_coarsen_flag();
@@ -238,13 +238,13 @@ namespace Viscoplastic
     const auto children = cell.get_child_indices();
     for (const auto child : children)
       go_to_child(child);
-    // As far as cells of the mesh may be refined.
+    // Descend to the deepest level of the mesh.
     for (unsigned int level = children.size() + 1;
          level < triangulation.n_global_levels();
          ++level)
       go_to_child(vertex);
     using Forest = typename P4est::types<dim>::forest;
-    // The coarse cell of a CellId is the tree.
+    // The index of a coarse cell is that of its tree.
     return P4est::functions<dim>::comm_find_owner(
       const_cast<Forest *>(triangulation.get_p4est()),
       cell.get_coarse_cell_id(),
@@ -276,8 +276,8 @@ namespace Viscoplastic
     const MPI_Comm comm = triangulation.get_communicator();
     for (bool changes = true; changes;)
       {
-        // A rank with a part of a cell of the model knows whether it is
-        // refined.
+        // Any rank that owns a part of a cell of the model knows whether that
+        // cell is refined.
         std::map<unsigned int, std::vector<CellId>> to_ask, to_refine;
         for (const auto &cell : triangulation.active_cell_iterators())
           if (cell->is_locally_owned())
@@ -314,8 +314,7 @@ namespace Viscoplastic
           result.push_back(mark_of(cell));
       return result;
     };
-    // Ever fewer families go and ever more cells are refined, until all ranks
-    // agree.
+    // This ends, since flags only change to coarsen less or to refine more.
     keep_incomplete_families(triangulation);
     bool any_change = true;
     while (any_change)

@@ -21,8 +21,8 @@ namespace Viscoplastic
 
   namespace
   {
-    /// Return the memory of this computer in bytes, or less if the process may
-    /// have less.
+    /// Return the memory of this computer in bytes, or the limit of the process
+    /// if that is less.
     double
     physical_memory()
     {
@@ -68,8 +68,8 @@ namespace Viscoplastic
                   const std::string &cause,
                   const MPI_Comm     communicator)
   {
-    // There are about as many nodes as cells. Trilinos counts with signed
-    // numbers of 32 bits, unknowns as well as the entries of a rank's matrix.
+    // There are about as many nodes as cells. Trilinos numbers unknowns and the
+    // matrix entries of a rank by signed 32-bit integers.
     constexpr double   most       = std::numeric_limits<int>::max();
     const double       n_unknowns = dim * n_cells;
     const double       n_entries  = n_unknowns * (dim == 2 ? 18. : 81.);
@@ -94,7 +94,7 @@ namespace Viscoplastic
         "."));
 
     // Measured: mesh and spaces take 760 (2D) and 1280 bytes (3D) a cell. The
-    // solver takes several times as much: this refuses only what must fail.
+    // solver takes several times as much: only runs that must fail are refused.
     const unsigned int n_here = n_ranks_on_this_computer(communicator);
     const double       n_coarse_bytes =
       n_ranks > 1 ? n_here * bytes_of_coarse_cells(dim, n_coarse_cells) : 0.;
@@ -111,7 +111,7 @@ namespace Viscoplastic
                  "ranks on a computer.";
     else
       message << " GB; --check says what a mesh needs.";
-    // Computers may differ, and all ranks have to throw.
+    // Memory may differ between computers, but all ranks have to throw.
     AssertThrow(!Utilities::MPI::logical_or(n_bytes > n_possible, communicator),
                 ExcMessage(message.str()));
   }

@@ -7,7 +7,7 @@ namespace Viscoplastic
 {
   namespace
   {
-    /// The bilinear mapping with weights that integrate over rings.
+    /// The bilinear mapping with weights for bodies of revolution.
     class RingMapping : public MappingQ<2>
     {
     public:
@@ -40,7 +40,7 @@ namespace Viscoplastic
                      const InternalDataBase &data,
                      Values                 &values) const override
       {
-        // The same section elsewhere is another ring.
+        // Translated cells have different radii, hence no similarity.
         MappingQ<2>::fill_fe_values(
           cell, CellSimilarity::none, quadrature, data, values);
         revolve(values);

@@ -18,13 +18,13 @@ namespace Viscoplastic
   {
     namespace bgi = boost::geometry::index;
 
-    /// How far outside of the unit cell, in its own measure, a point may be for
-    /// the sake of rounding.
+    /// The tolerance for rounding errors by which a point may be outside of the
+    /// unit cell, in reference coordinates.
     constexpr double slack = 1e-8;
 
 
 
-    /// The points by their places, to be asked for those in a box.
+    /// A search tree of points for queries by boxes.
     template <int dim>
     class PointTree
     {
@@ -37,7 +37,7 @@ namespace Viscoplastic
         tree = pack_rtree(numbered);
       }
 
-      /// Call visit(number) for the points in the box around some vertices.
+      /// Call visit(number) for the points in the bounding box of vertices.
       template <typename Vertices, typename Function>
       void
       for_each_near(const Vertices &vertices, const Function &visit) const
@@ -59,12 +59,12 @@ namespace Viscoplastic
 
 
 
-    /// The candidate of this rank for the cell of a point, which the least key
-    /// on all ranks wins.
+    /// The candidate of this rank for the cell of a point; over all ranks, the
+    /// candidate with the least key is chosen.
     template <int dim>
     struct Candidate
     {
-      /// A distance, and the center of the cell or face.
+      /// The distance, then the center of the cell or face.
       std::array<double, dim + 1> key;
       CellPoint<dim>              place;
 
@@ -91,7 +91,7 @@ namespace Viscoplastic
 
 
 
-    /// Each point goes to the rank with the least key. Collective.
+    /// Assign each point to the rank with the least key. Collective.
     template <int dim>
     PointLocations<dim>
     elect(const std::vector<Candidate<dim>> &candidates, const MPI_Comm comm)
@@ -121,7 +121,7 @@ namespace Viscoplastic
 
 
 
-    /// A point of a face, given by its vertices.
+    /// Return a point of the face with these vertices.
     template <int dim>
     Point<dim>
     interpolate(const std::vector<Point<dim>> &vertices,
@@ -136,13 +136,13 @@ namespace Viscoplastic
 
 
 
-    /// The nearest point of a face to x, in the coordinates of the unit face.
+    /// Return the point of a face that is nearest to x, in unit coordinates.
     template <int dim>
     Point<dim - 1>
     nearest_on_face(const std::vector<Point<dim>> &vertices,
                     const Point<dim>              &x)
     {
-      // Straight in each coordinate: one after the other.
+      // A face is straight in each coordinate: minimize over one at a time.
       Point<dim - 1> unit;
       for (unsigned int d = 0; d < dim - 1; ++d)
         unit[d] = 0.5;
@@ -164,13 +164,14 @@ namespace Viscoplastic
           if (change < 1e-12)
             break;
         }
-      // Each sweep comes nearer, and callers measure how near.
+      // An unconverged result is still usable: each sweep reduces the distance,
+      // which callers compute.
       return unit;
     }
 
 
 
-    /// A point of a face of a cell.
+    /// Return the CellPoint for a point of a face of a cell.
     template <int dim>
     CellPoint<dim>
     on_face(const std::size_t     cell,
@@ -182,7 +183,7 @@ namespace Viscoplastic
       result.cell               = cell;
       result.face               = f;
       result.unit               = Point<dim>();
-      // Vertices of the face in the cell, whatever its orientation.
+      // Use the cell's own numbering of the face, whatever its orientation.
       for (unsigned int v = 0; v < GeometryInfo<dim - 1>::vertices_per_cell;
            ++v)
         result.unit += GeometryInfo<dim - 1>::d_linear_shape_function(unit, v) *
@@ -194,9 +195,9 @@ namespace Viscoplastic
 
 
 
-    /// Offer points the nearest place of each boundary face that is wanted:
-    /// those that for_each_near(vertices of the face, visit) visits by their
-    /// numbers. With @p only_on_them to points that are on the face.
+    /// Offer points the nearest place on each boundary face that is wanted: the
+    /// points that for_each_near(vertices of the face, visit) visits by their
+    /// numbers. With @p only_on_them, only points on the face.
     template <int dim, typename IsWanted, typename ForEachNear>
     void
     offer_faces(const Triangulation<dim>      &mesh,
@@ -213,7 +214,7 @@ namespace Viscoplastic
             const auto face = cells[c]->face(f);
             if (!face->at_boundary() || !is_wanted(face->boundary_id()))
               continue;
-            // In the order of the cell's own vertices.
+            // The vertices in the cell's own numbering of the face.
             std::vector<Point<dim>> vertices;
             for (unsigned int v = 0;
                  v < GeometryInfo<dim - 1>::vertices_per_cell;
@@ -251,7 +252,7 @@ namespace Viscoplastic
     const PointTree<dim>        tree(points);
     std::vector<Candidate<dim>> candidates(points.size());
     const auto                  cells = owned_cells(mesh);
-    // In the place of a distance: 0 in the cells that are preferred.
+    // The key has this number in place of a distance: 0 in preferred cells.
     const auto rank_of = [&is_preferred](const types::material_id id) {
       return !is_preferred || is_preferred(id) ?
                0. :
@@ -288,7 +289,7 @@ namespace Viscoplastic
       if (distance <= std::numeric_limits<double>::min())
         distance = 0.;
 
-    // The others: few, if any.
+    // Points outside of the mesh: few, if any.
     std::vector<std::size_t> outside;
     for (std::size_t i = 0; i < points.size(); ++i)
       if (result.distances[i] > 0.)

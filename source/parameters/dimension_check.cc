@@ -21,15 +21,16 @@ namespace Viscoplastic
     /// A part of an expression.
     struct Value
     {
-      /// The dimension of the value; none where numbers without unit make it
-      /// fit anything.
+      /// The dimension of the value; nothing if numbers without unit make it
+      /// fit any dimension.
       std::optional<Dimension> dimension;
-      /// The value of a constant, which exponents need, whatever its dimension.
+      /// The value of a constant, which is needed if it is an exponent.
       std::optional<double> number = {};
-      /// Whether a unit has been written in it.
+      /// Whether a number in it has a unit.
       bool has_unit = false;
 
-      /// A number without unit, which is a pure one beside numbers with units.
+      /// A number without unit, which is a pure number beside numbers with
+      /// units.
       bool
       is_bare_number() const
       {
@@ -39,17 +40,16 @@ namespace Viscoplastic
 
     const Value pure_number{Dimension()}, anything{};
 
-    /// What has been said of a dimension, for the sentence.
+    /// Thrown if dimensions do not match, with a part of the message.
     struct Contradiction
     {
       std::string words;
     };
 
-    // Deeper expressions would need a deep stack of this reader; muParser has
-    // none.
+    // Limits the recursion; muParser itself needs no deep stack.
     const unsigned int deepest = 1000;
 
-    /// The text is none that is known here.
+    /// Thrown if the text cannot be read.
     struct Unreadable
     {};
 
@@ -84,7 +84,7 @@ namespace Viscoplastic
 
 
 
-    /// Reads an expression as muParser does, for its dimensions.
+    /// Parses an expression as muParser does and computes its dimension.
     class DimensionReader
     {
     public:
@@ -110,8 +110,8 @@ namespace Viscoplastic
         return at < text.size() ? text[at] : '\0';
       }
 
-      /// The first of these that comes next, which is behind then; empty if
-      /// none does.
+      /// Skip and return the first of the @p tokens that comes next; return an
+      /// empty string if none does.
       std::string
       take(const std::vector<std::string> &tokens)
       {
@@ -131,7 +131,8 @@ namespace Viscoplastic
         return !take({token}).empty();
       }
 
-      /// The value of two operands that have to have the same dimension.
+      /// Return the value of an operation on two operands that must have the
+      /// same dimension.
       Value
       common(const Value &a, const Value &b, const std::size_t begin) const
       {
@@ -179,8 +180,8 @@ namespace Viscoplastic
         return common(first, choice(), begin);
       }
 
-      /// Operands between binary operators, of which the later ones in the
-      /// table bind closer.
+      /// Read operands between binary operators of at least this precedence;
+      /// later rows of the table bind more tightly.
       Value
       binary(const std::size_t precedence)
       {
@@ -212,7 +213,7 @@ namespace Viscoplastic
           {
             Value value = common(a, b, begin);
             if (sign != "+" && sign != "-")
-              return anything; // of a comparison
+              return anything; // the result of a comparison
             if (a.number && b.number)
               value.number = *a.number + (sign == "+" ? 1. : -1.) * *b.number;
             return value;
@@ -324,11 +325,11 @@ namespace Viscoplastic
           }
         if (n == 1 && name == "sqrt")
           return power(arguments[0], {{}, 0.5});
-        return anything; // sign, columns of tables, what muParser will refuse
+        return anything; // sign(), columns of tables, and functions that
+                         // muParser refuses
       }
 
-      /// Counts the parts within parts that are being read, as long as it
-      /// lives.
+      /// Counts the depth of the recursion during its lifetime.
       struct Level
       {
         explicit Level(DimensionReader &reader)
@@ -355,7 +356,7 @@ namespace Viscoplastic
 
 
 
-    /// The parts between separators outside of parentheses.
+    /// Split a list at separators outside of parentheses.
     std::vector<std::string>
     parts_of_list(const std::string &text)
     {
@@ -399,7 +400,7 @@ namespace Viscoplastic
           return contradiction.words;
         }
       catch (const Unreadable &)
-        {} // the sentence is that of the parser
+        {} // the parser of expressions reports the error
     return "";
   }
 

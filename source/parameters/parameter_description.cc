@@ -17,7 +17,7 @@ namespace Viscoplastic
   {
     using Tree = boost::property_tree::ptree;
 
-    // The scene that is described: the default body, held at x = 0.
+    // The default scene that is described: a body held at x = 0.
     const std::string described_boundary = "Boundary 0";
     const std::string described_material = "Material 1";
     const std::string described_table    = "Table 1";
@@ -78,7 +78,7 @@ namespace Viscoplastic
 
 
 
-    /// The words of a text in lines that begin with @p margin.
+    /// Break a text into lines that begin with @p margin.
     std::string
     wrap(const std::string &text, const std::string &margin)
     {
@@ -91,7 +91,7 @@ namespace Viscoplastic
 
 
 
-    /// An entry or subsection with what the manual says of it.
+    /// An entry or subsection with its paragraphs in the manual.
     struct Item
     {
       std::string              name;
@@ -101,9 +101,9 @@ namespace Viscoplastic
 
 
 
-    /// What is in a subsection, entries first. A paragraph about an entry that
-    /// begins with the name of a subsection and a colon is about that
-    /// subsection: so the texts of laws come to their parameters.
+    /// Return the contents of a subsection, entries first. A paragraph on an
+    /// entry that begins with the name of a subsection and a colon is moved to
+    /// that subsection; so the texts of laws come to their parameters.
     std::vector<Item>
     items(const Tree &section)
     {
@@ -129,7 +129,7 @@ namespace Viscoplastic
 
 
     /// Which entries of a section are printed: all with comments, those that
-    /// differ from their defaults, or all without a word.
+    /// differ from their defaults, or all without comments.
     enum class Style
     {
       explained,
@@ -137,7 +137,7 @@ namespace Viscoplastic
       all
     };
 
-    /// Print a section; lines begin with @p margin.
+    /// Print a section in lines that begin with @p margin.
     void
     print_section(std::ostream      &out,
                   const Tree        &section,
@@ -164,7 +164,7 @@ namespace Viscoplastic
               out << (begins_with_blank_line ? "\n" : "");
               for (const std::string &paragraph : about)
                 comment(paragraph);
-              // What a text may be is part of its meaning.
+              // For texts, the description says which are allowed.
               comment(
                 "Default: " + (standard.empty() ? "empty" : standard) +
                 (allowed == "any text" ? "." : "; allowed: " + allowed + "."));
@@ -186,7 +186,7 @@ namespace Viscoplastic
 
 
 
-    /// The name of a section without its number.
+    /// Return the name of a section without its number.
     std::string
     kind_of(const std::string &name)
     {
@@ -195,7 +195,7 @@ namespace Viscoplastic
 
 
 
-    /// Add to each entry which values it may have, in words.
+    /// Add the allowed values in words to each entry.
     void
     add_allowed_values(Tree &section)
     {
@@ -234,8 +234,8 @@ namespace Viscoplastic
       if (is_entry(child.second))
         top.push_back(child);
     print_section(out, top, "", Style::explained);
-    // One of each kind of numbered sections; of a scene, whose values may
-    // differ in each, all of them.
+    // Without files, only the first section of each numbered kind is explained;
+    // the sections of a given scene may have different values.
     std::set<std::string> explained;
     for (const auto &[name, section] : tree)
       {

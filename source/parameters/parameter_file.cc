@@ -67,7 +67,8 @@ namespace Viscoplastic
                           dimension,
                           "2 (plane strain, or a body of revolution) or 3.",
                           Patterns::Integer(2, 3));
-    // Independent of the working directory, as the name of the mesh file.
+    // The names of libraries are replaced by paths that do not depend on the
+    // working directory, as is the name of the mesh file.
     handler.declare_entry(
       shared_libraries_entry,
       "",
@@ -108,12 +109,12 @@ namespace Viscoplastic
   void
   Parameters::read(const std::vector<ParameterLine> &lines)
   {
-    // The empty comments: a backslash before one does not continue the line.
+    // An empty comment keeps a backslash at the end from continuing the line.
     std::string text;
     for (const ParameterLine &line : lines)
       text += line.text + " #\n";
     std::istringstream input(text);
-    // The line that has just been read.
+    // The line that the handler has just read.
     const auto line = [&]() -> const ParameterLine & {
       return lines
         [std::count(text.begin(), text.begin() + input.tellg(), '\n') - 1];
@@ -155,7 +156,7 @@ namespace Viscoplastic
         {
           const std::string path = line.section + line.name;
           const Tree &entry = declared.get_child(Tree::path_type(path, '/'));
-          // The record of a run has the entries with their defaults.
+          // Defaults are allowed, since the record of a run contains them.
           AssertThrow(
             line.value == entry.get<std::string>("default_value"),
             ExcMessage(
@@ -347,7 +348,7 @@ namespace Viscoplastic
         handler.print_parameters(out, ParameterHandler::Text);
         return;
       }
-    // One that takes any text.
+    // A handler that accepts any text, such as numbers with units.
     ParameterHandler                        record;
     const std::function<void(const Tree &)> declare_all =
       [&](const Tree &section) {

@@ -21,14 +21,14 @@ namespace Viscoplastic
 
   namespace
   {
-    // Nobody writes more by hand; these end recursions and devices.
+    // Limits that end recursive includes and reading from devices.
     const std::size_t  max_characters = 10'000'000;
     const unsigned int max_files      = 1000;
     const int          max_depth      = 50;
 
 
 
-    /// The text of a file, with blanks for tabs.
+    /// Return the text of a file with blanks for tabs.
     std::string
     content(const std::string &file, const std::string &called)
     {
@@ -57,7 +57,7 @@ namespace Viscoplastic
 
 
 
-    /// What is written as JSON must be so.
+    /// Values have to be valid UTF-8, since they are written as JSON.
     bool
     is_utf8(const std::string &text)
     {
@@ -74,7 +74,7 @@ namespace Viscoplastic
 
 
 
-    /// `Boundary  03' as `Boundary 3'.
+    /// Return `Boundary 3' for `Boundary 03'.
     std::string
     with_plain_id(const std::string &name, const std::string &origin)
     {
@@ -94,12 +94,12 @@ namespace Viscoplastic
 
 
 
-    /// A file, or an assignment on the command line.
+    /// A file or an assignment on the command line that is being read.
     struct Source
     {
       std::string                name;
       std::vector<ParameterLine> open;
-      /// The lines of what has been set, by path.
+      /// The line numbers of entries that have been set, by path.
       std::map<std::string, unsigned int> set;
     };
 
@@ -108,13 +108,13 @@ namespace Viscoplastic
     struct Reader
     {
       std::vector<ParameterLine> lines;
-      /// The subsections that are open, each with a `/' behind it.
+      /// The open subsections, each followed by `/'.
       std::string section;
       /// Files that are being read, each included by the one before it.
       std::vector<fs::path> open_files;
       unsigned int          n_files = 0;
 
-      /// @p caller is what messages say before the name of the file.
+      /// Read a file; @p caller precedes its name in messages.
       void
       read_file(const std::string &file, const std::string &caller)
       {
@@ -141,7 +141,7 @@ namespace Viscoplastic
                     ExcMessage(
                       where +
                       ": there is no `='; it must be 'Section/Entry=value'."));
-        // The record of the run must be readable again.
+        // Otherwise the record of the run could not be read again.
         AssertThrow(text.find_first_of("#\n\r") == std::string::npos &&
                       text.back() != '\\',
                     ExcMessage(
@@ -169,7 +169,7 @@ namespace Viscoplastic
         read(input, where, 0);
       }
 
-      /// Lines are counted from @p first, or not at all if that is 0.
+      /// Read lines, counted from @p first, or not counted if that is 0.
       void
       read(std::istream &input, const std::string &name, unsigned int first)
       {
@@ -247,7 +247,7 @@ namespace Viscoplastic
                 std::to_string(line.number) +
                 "; keep one of them, or move one to a file of its own to "
                 "override the other."));
-            // To ParameterHandler that is a list of runs, left unread.
+            // ParameterHandler takes braces for alternatives of several runs.
             AssertThrow(line.value.find('{') == std::string::npos,
                         ExcMessage(line.origin() + ": '" + excerpt(path) +
                                    "' is '" + excerpt(line.value) +

@@ -26,7 +26,7 @@ namespace Viscoplastic
     const std::string power_law  = "1/(stress^n time)",
                       compliance = "stress/length^m";
 
-    /// What descriptions call the dimensions of entries.
+    /// The dimensions of entries, by the words in their descriptions.
     const std::map<std::string, Dimension> dimension_of_words{
       {"1", {0., 0., 0.}},
       {"length", {1., 0., 0.}},
@@ -53,7 +53,7 @@ namespace Viscoplastic
 
 
 
-    /// The number with as few digits as tell it up to rounding.
+    /// Return a number with as few digits as determine it up to rounding.
     std::string
     shortest(const double number)
     {
@@ -92,7 +92,7 @@ namespace Viscoplastic
           if (i == begin)
             {
               ++i;
-              // Digits in a name begin no number.
+              // Skip names, since digits in them begin no number.
               if (is_part_of_word(text[begin]))
                 while (i < text.size() && is_part_of_word(text[i]))
                   ++i;
@@ -126,7 +126,7 @@ namespace Viscoplastic
 
 
 
-    /// The value of an entry in the end; its default if no line sets it.
+    /// Return the last value of an entry; its default if no line sets it.
     std::string
     last_value(const std::vector<ParameterLine> &lines,
                const std::string                &path,
@@ -138,7 +138,7 @@ namespace Viscoplastic
 
 
 
-    /// The number that the exponent in the section of a line has.
+    /// Return the value of the exponent in the section of a line.
     std::optional<double>
     exponent_beside(const ParameterLine              &line,
                     const std::vector<ParameterLine> &lines,
@@ -221,7 +221,7 @@ namespace Viscoplastic
                      "`Time' and `Stress' in `subsection Units'"));
         const double factor =
           unit.si / (entry.is_wall_time ? 1. : units.si(unit.dimension));
-        // Not by std::stod(), which throws also where a number is tiny.
+        // std::stod() is not used, since it throws for tiny numbers.
         const double value = factor * std::strtod(digits.c_str(), nullptr);
         AssertThrow(std::isfinite(value),
                     ExcMessage("'" + excerpt(digits) +
@@ -259,7 +259,7 @@ namespace Viscoplastic
                const ParameterHandler     &handler)
   {
     std::map<std::string, std::string> as_written;
-    std::optional<Tree>                declared; // takes its time
+    std::optional<Tree> declared; // made only if needed, since it is slow
     for (ParameterLine &line : lines)
       {
         if (line.is_opening || line.name.empty())
@@ -281,7 +281,7 @@ namespace Viscoplastic
                                       exponent_beside(line, lines, *declared));
             if (!unit)
               continue;
-            // What another line overrides belongs to another exponent.
+            // The exponent need not belong to a value that is overridden later.
             if (unit->exponent && last_line(lines, path) != &line)
               unit = EntryUnit();
             if (path == "Time/Phases")

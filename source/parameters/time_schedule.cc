@@ -15,12 +15,12 @@ namespace Viscoplastic
 
   namespace
   {
-    /// More are a slip of the pen, and would not fit into the type of n.
+    /// More steps are surely a mistake, and would not fit into the type of n.
     constexpr double max_n_steps = 1e9;
 
 
 
-    /// The end of step j of a phase.
+    /// Return the end of step j of a phase.
     double
     step_end(const TimeSchedule::Phase &phase, const unsigned int j)
     {
@@ -46,7 +46,7 @@ namespace Viscoplastic
               if (parts.size() == 2)
                 {
                   end = Utilities::string_to_double(parts[0]);
-                  // Not as an integer, which large numbers would wrap.
+                  // Read as a double: large numbers would overflow an integer.
                   const double n = Utilities::string_to_double(parts[1]);
                   if (n == std::floor(n))
                     n_steps =
@@ -137,7 +137,7 @@ namespace Viscoplastic
   TimeSchedule::next_time(const double t) const
   {
     const Phase &phase = phase_at(t);
-    // A guess that rounding may have moved by one.
+    // This guess may be off by one due to rounding.
     unsigned int j = static_cast<unsigned int>(
       std::clamp((t - phase.start) / phase.step_size(),
                  1.,

@@ -35,7 +35,7 @@ namespace Viscoplastic
 
 
 
-    /// The names of the entries in @p section, or of its subsections.
+    /// Return the names of the entries in @p section, or of its subsections.
     Names
     names_in(const std::string &section,
              const Entries     &entries,
@@ -55,8 +55,8 @@ namespace Viscoplastic
 
 
 
-    /// The name of a line with `/' for each `.', if that begins with a
-    /// subsection; otherwise empty.
+    /// Return the path of a line with `/' for each `.' in its name if it begins
+    /// with a subsection; otherwise an empty string.
     std::string
     with_slashes(const ParameterLine &line, const Entries &entries)
     {
@@ -97,7 +97,7 @@ namespace Viscoplastic
           return said + "; a boundary needs its id, as in `Boundary 0'.";
         if (line.name == "Table")
           return said + "; a table needs a number, as in `Table 1'.";
-        // Any number makes a subsection.
+        // Numbered subsections are valid with any number.
         const std::size_t id = line.name.find_last_not_of("0123456789") + 1;
         for (const std::string kind : {"Boundary ", "Material ", "Table "})
           if (id < line.name.size())
@@ -200,7 +200,7 @@ namespace Viscoplastic
       {
         std::vector<std::string> values =
           Utilities::split_string_list(part[1], '|');
-        // A default that stands for nothing is no choice.
+        // The default "not given" cannot be chosen.
         values.erase(std::remove(values.begin(), values.end(), "not given"),
                      values.end());
         return "one of " + enumeration(values, 50);

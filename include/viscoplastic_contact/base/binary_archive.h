@@ -15,9 +15,9 @@ namespace Viscoplastic
   using namespace dealii;
 
   // Like Boost's binary archives, `archive & a & b' writes or reads numbers,
-  // tensors and vectors of them in the machine's representation. Unlike theirs,
-  // the reader does not trust the lengths that it reads: damaged bytes end in
-  // an exception, not in an allocation of any size.
+  // tensors and vectors of these in the representation of the machine. Unlike
+  // those archives, the reader does not trust the lengths in the data: damaged
+  // data end in an exception, not in an allocation of arbitrary size.
 
   class BinaryWriter
   {
@@ -149,7 +149,7 @@ namespace Viscoplastic
     {
       AssertThrow(n <= (text.size() - position) / sizeof(T), too_short());
       if (n == 0)
-        return; // the target may be null, which memcpy() must not be given
+        return; // memcpy() must not be given a null pointer
       std::memcpy(target, text.data() + position, n * sizeof(T));
       position += n * sizeof(T);
     }

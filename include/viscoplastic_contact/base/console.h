@@ -19,9 +19,9 @@ namespace Viscoplastic
   class Console
   {
   public:
-    /// @p quiet leaves the standard output alone, not the log. @p verbose:
-    /// nothing is left out for brevity. Throws ExcMessage if @p log_file,
-    /// unless empty, cannot be written.
+    /// Open @p log_file for writing unless the name is empty; throws ExcMessage
+    /// if that fails. @p quiet suppresses the standard output, but not the log.
+    /// @p verbose turns off all abbreviations of the output.
     explicit Console(const MPI_Comm     communicator = MPI_COMM_WORLD,
                      const bool         quiet        = false,
                      const std::string &log_file     = "",
@@ -33,8 +33,8 @@ namespace Viscoplastic
     Console &
     operator=(const Console &) = delete;
 
-    /// Text goes to the standard output and the log whenever this is flushed;
-    /// on other ranks nowhere.
+    /// Return the stream for output: on rank 0, flushing it writes to standard
+    /// output and log; on other ranks the text is discarded.
     std::ostream &
     stream()
     {
@@ -47,39 +47,37 @@ namespace Viscoplastic
       return everywhere.flush(), log_file;
     }
 
-    /// Whether all is to be told, also what repeats itself.
+    /// Return whether also repetitive output is wanted in full.
     bool
     is_verbose() const
     {
       return verbose;
     }
 
-    /// Whether anybody gets to see what is said on this rank.
+    /// Return whether the output of this rank goes anywhere.
     bool
     is_heard() const
     {
       return speaks || log_file.is_open();
     }
 
-    /// Seconds since the beginning.
+    /// Return the seconds since the construction of this object.
     double
     age() const
     {
       return std::chrono::duration<double>(Clock::now() - beginning).count();
     }
 
-    /// Whether nothing has been said for @p seconds, or for a hundredth of the
-    /// time since the beginning if that is longer, so that long runs do not
-    /// flood.
+    /// Return whether there has been no output for @p seconds, or for a
+    /// hundredth of the age() if that is longer, to limit output.
     bool
     is_silent_for(const double seconds) const;
 
-    /// Print a sentence that the user should not overlook; it is repeated at
-    /// the end.
+    /// Print a sentence that the user should see, and keep it in remarks().
     void
     remark(const std::string &sentence)
     {
-      // Two passes may say the same.
+      // Repeated passes over the input may give the same remark.
       if (std::find(all_remarks.begin(), all_remarks.end(), sentence) !=
           all_remarks.end())
         return;
@@ -87,20 +85,20 @@ namespace Viscoplastic
       everywhere << sentence << std::endl;
     }
 
-    /// The sentences given to remark(), in the order in which they came.
+    /// Return the different sentences given to remark(), in order.
     const std::vector<std::string> &
     remarks() const
     {
       return all_remarks;
     }
 
-    /// Throws ExcMessage if not all has been written that was to be, on the
-    /// standard output or in the log: the disk may be full. On rank 0.
+    /// Throw ExcMessage if a write to the standard output or to the log has
+    /// failed, for example because the disk is full. Only rank 0 writes.
     void
     check();
 
   private:
-    /// Keeps text until it is flushed.
+    /// Collects text and passes it on when it is flushed.
     struct Buffer : public std::stringbuf
     {
       explicit Buffer(Console &console)

@@ -14,35 +14,34 @@ namespace Viscoplastic
 {
   using namespace dealii;
 
-  /// A symmetric matrix in dense blocks of nodes, which have `dim` degrees of
-  /// freedom each, in compressed rows. Each rank has the rows of its own range
-  /// of nodes: the diagonal, the upper triangle, and all columns of other
-  /// ranks.
+  /// A symmetric matrix of dense blocks, one for each pair of coupled nodes
+  /// with `dim` degrees of freedom each, in compressed row storage. Each rank
+  /// stores the rows of its own range of nodes: the diagonal, the upper
+  /// triangle, and all columns of nodes of other ranks.
   ///
-  /// Nodes have local numbers, those of this rank first, in their order.
+  /// Nodes have local numbers: first owned nodes in global order, then ghosts.
   class DistributedMatrix
   {
   public:
-    /// The number of a node on all ranks: its first degree of freedom over
-    /// their number at a node.
+    /// The global number of a node: its first degree of freedom over `dim`.
     using Node = types::global_dof_index;
 
-    /// Lists of nodes, one after the other; the nodes of a list couple.
+    /// Lists of nodes in compressed storage; all nodes of a list couple.
     struct NodeLists
     {
       std::vector<std::size_t> begin{0};
       std::vector<Node>        nodes;
     };
 
-    /// Set to zero, with blocks for the nodes that couple in lists of any rank;
-    /// @p owned: the degrees of freedom of this rank. Collective.
+    /// Set the matrix to zero, with blocks for the nodes that couple in lists
+    /// of any rank. @p owned: the degrees of freedom of this rank. Collective.
     void
     reinit(const IndexSet    &owned,
            const unsigned int dim,
            NodeLists          lists,
            const MPI_Comm     communicator);
 
-    /// The degrees of freedom on all ranks.
+    /// The global number of degrees of freedom.
     types::global_dof_index
     m() const
     {
@@ -61,7 +60,7 @@ namespace Viscoplastic
       return pattern->partitioner->get_mpi_communicator();
     }
 
-    /// Owned nodes, and those with columns of other ranks.
+    /// The numbers of owned nodes, and of owned and ghost nodes.
     unsigned int
     n_rows() const
     {
@@ -73,14 +72,14 @@ namespace Viscoplastic
       return pattern->n_owned + pattern->ghosts.size();
     }
 
-    /// The degrees of freedom of a node.
+    /// The number of degrees of freedom of a node.
     unsigned int
     block_size() const
     {
       return pattern->dim;
     }
 
-    /// The number on all ranks of the node with a local number.
+    /// The global number of the node with a local number.
     Node
     global_node(const unsigned int number) const
     {
@@ -89,8 +88,7 @@ namespace Viscoplastic
                pattern->ghosts[number - pattern->n_owned];
     }
 
-    /// The entry on the diagonal, by the position among the owned degrees of
-    /// freedom.
+    /// The diagonal entry of the i-th owned degree of freedom.
     double
     diagonal(const std::size_t i) const
     {
@@ -99,12 +97,12 @@ namespace Viscoplastic
                                                      (pattern->dim + 1)];
     }
 
-    /// The entry of an owned row; zero outside of the pattern.
+    /// The entry of an owned row; zero outside of the sparsity pattern.
     double
     el(const types::global_dof_index i, const types::global_dof_index j) const;
 
-    /// Call act(row, column, block) for each block of owned rows, by local
-    /// numbers; @p block is a pointer to dim x dim numbers, row by row.
+    /// Call act(row, column, block) for each stored block of owned rows, with
+    /// local numbers; @p block points to dim x dim numbers in row-major order.
     template <typename Function>
     void
     for_each_block(const Function &act) const
@@ -114,9 +112,9 @@ namespace Viscoplastic
           act(i, pattern->columns[e], block(i, e));
     }
 
-    /// The whole rows of owned nodes, columns in ascending order of their local
-    /// numbers. A block whose column is that of an owned node before the row is
-    /// the transpose of what its pointer shows.
+    /// The rows of owned nodes with both triangles, columns in ascending order
+    /// of their local numbers. Where the column is less than the row, the
+    /// pointer shows the transpose of the block.
     struct WholeRows
     {
       std::vector<std::size_t>    begin;
@@ -130,7 +128,7 @@ namespace Viscoplastic
     void
     vmult(DistributedVector &y, const DistributedVector &x) const;
 
-    /// A block of an owned row.
+    /// A stored block of an owned row, by its position in the pattern.
     struct Place
     {
       unsigned int row;
@@ -147,23 +145,23 @@ namespace Viscoplastic
       return block(place.row, place.entry);
     }
 
-    /// The blocks with a row or a column among these nodes, by local numbers of
-    /// columns.
+    /// Return the stored blocks whose row or column is chosen; @p is_chosen is
+    /// indexed by the local numbers of columns.
     std::vector<Place>
     blocks_at(const std::vector<bool> &is_chosen) const;
 
-    /// y := A x with these blocks and their transposes alone. Collective.
+    /// y := A x with only these blocks and their transposes. Collective.
     void
     vmult(DistributedVector        &y,
           const DistributedVector  &x,
           const std::vector<Place> &places) const;
 
-    /// Entries of owned degrees of freedom at all columns. Collective.
+    /// Return the owned entries of a vector, then those of ghosts. Collective.
     std::vector<double>
     at_columns(const double *owned) const;
 
-    /// Add a symmetric matrix for these degrees of freedom, node by node; what
-    /// is zero need not be in the pattern.
+    /// Add a symmetric matrix for these degrees of freedom, which are ordered
+    /// node by node; zero entries need not be in the pattern.
     void
     add(const std::vector<types::global_dof_index> &dofs,
         const FullMatrix<double>                   &matrix);
@@ -171,12 +169,12 @@ namespace Viscoplastic
     void
     add_to_diagonal(const std::size_t i, const double value);
 
-    /// Pass on what has been added to rows of other ranks. Collective.
+    /// Send contributions to rows of other ranks to their owners. Collective.
     void
     compress();
 
-    /// Have rows with the same values share them, if most can, as on uniform
-    /// meshes. What is added later takes them apart again.
+    /// Store rows with the same values only once if that halves the storage, as
+    /// on uniform meshes. Later additions undo the sharing.
     void
     share_rows();
 
@@ -189,21 +187,21 @@ namespace Viscoplastic
       Node                      first;
       std::vector<Node>         ghosts; // ascending
       std::vector<unsigned int> owner_of_ghost;
-      /// Owned rows, then what this rank adds to those of ghosts; in a row the
-      /// columns ascend.
+      /// Where the rows begin: owned rows, then the contributions of this rank
+      /// to rows of ghosts. The columns of a row ascend.
       std::vector<std::size_t>  begin{0};
       std::vector<unsigned int> columns;
-      /// Of degrees of freedom.
+      /// The owned and ghost degrees of freedom.
       std::shared_ptr<const Utilities::MPI::Partitioner> partitioner;
-      /// For compress(): where rows of each other rank begin and end here, and
-      /// the entries for which it has contributions.
+      /// For compress(): the range of entries of this rank that go to each
+      /// other rank, and the entries to which those received are added.
       std::map<unsigned int, std::pair<std::size_t, std::size_t>> to_send;
       std::map<unsigned int, std::vector<std::size_t>>            to_receive;
 
       unsigned int
       local_number(const Node node) const;
 
-      /// Whether the block is stored, or else its transpose.
+      /// Whether this block is stored, rather than its transpose.
       bool
       has(const unsigned int row, const unsigned int column) const;
 
@@ -223,7 +221,7 @@ namespace Viscoplastic
       return pattern->dim * pattern->dim;
     }
 
-    /// The block of an entry of an owned row; the diagonal is the first one.
+    /// The block of an entry of an owned row; the first one is the diagonal.
     const double *
     block(const unsigned int row, const std::size_t entry) const
     {
@@ -237,13 +235,13 @@ namespace Viscoplastic
       return shared_block.empty() ? pattern->begin : shared_block;
     }
 
-    /// Give each row values of its own.
+    /// Undo share_rows(): give each row its own values.
     void
     take_apart();
 
     std::shared_ptr<const Pattern> pattern;
     std::vector<double>            values;
-    /// Where rows share values: the number of their first block among these.
+    /// If rows are shared: the index of each row's first block in `values`.
     std::vector<std::size_t> shared_block;
   };
 } // namespace Viscoplastic

@@ -15,8 +15,8 @@ namespace Viscoplastic
 {
   using namespace dealii;
 
-  /// An expression of the parameter file that cannot be parsed. Who knows the
-  /// file can add the place of the entry.
+  /// Thrown if an expression of the parameter file cannot be parsed. Code that
+  /// knows the file can add the line of the entry.
   class ExpressionError : public StandardExceptions::ExcMessage
   {
   public:
@@ -30,9 +30,9 @@ namespace Viscoplastic
   };
 
 
-  /// A muParser function of @p variables, e.g. "x,y,t", of which the last is
-  /// what set_time() sets. @p entry names the parameter in error messages.
-  /// Throws ExpressionError when @p text cannot be parsed.
+  /// Return a muParser function of @p variables, e.g. "x,y,t"; set_time() sets
+  /// the last of these. @p entry names the parameter in error messages. Throws
+  /// ExpressionError when @p text cannot be parsed.
   template <int dim>
   std::unique_ptr<FunctionParser<dim>>
   parse_expression(const std::string &text,
@@ -40,23 +40,23 @@ namespace Viscoplastic
                    const std::string &entry);
 
 
-  /// A point or vector of the parameter file: dim numbers separated by commas.
-  /// Throws ExcMessage naming @p entry.
+  /// Parse a point or vector: dim numbers separated by commas. Throws
+  /// ExcMessage naming @p entry.
   template <int dim>
   Point<dim>
   parse_point(const std::string &text, const std::string &entry);
 
 
   /// A scalar datum of the scene: a muParser expression of x, y, (z,) t given
-  /// in the parameter file. It knows what it does not depend on, so that its
-  /// users need not evaluate what cannot change.
+  /// in the parameter file. It tells on which variables it depends, so that
+  /// callers can avoid needless evaluations.
   template <int dim>
   class Expression
   {
   public:
     /// @p entry names the parameter in error messages. @p variables are the
-    /// names of the dim arguments before t where these are no coordinates; one
-    /// more may follow them. Throws ExpressionError when @p text cannot be
+    /// names of the dim arguments before t, by default the coordinates, and
+    /// optionally of one more. Throws ExpressionError when @p text cannot be
     /// parsed.
     Expression(const std::string &text,
                const std::string &entry,
@@ -65,25 +65,26 @@ namespace Viscoplastic
 
     using Function = std::function<double(const Point<dim> &, const double)>;
 
-    /// A datum that follows from others in ways unknown here; @p entry names
-    /// what it follows from.
+    /// A datum given by a function, which may depend on place and time; @p
+    /// entry names its origin in error messages.
     Expression(const Function &function, const std::string &entry);
 
-    /// Throws ExcMessage naming entry, place and time if not finite. @p
-    /// additional is the variable that follows the dim first ones, if any.
+    /// Return the value; throws ExcMessage naming entry, place and time if it
+    /// is not finite. @p additional is the value of the variable that follows
+    /// the first dim ones, if any.
     double
     value(const Point<dim> &x,
           const double      t,
           const double      additional = 0.) const;
 
-    /// Throw ExcMessage, naming entry, place and time, unless the value @p
-    /// result that is known already is finite.
+    /// Throw ExcMessage naming entry, place and time unless @p result, the
+    /// value at x and t, is finite.
     void
     require_finite(const double      result,
                    const Point<dim> &x,
                    const double      t) const;
 
-    /// The gradient, by central differences of the expression.
+    /// Return the gradient, computed by central differences.
     Tensor<1, dim>
     gradient(const Point<dim> &x, const double t) const;
 
@@ -99,23 +100,23 @@ namespace Viscoplastic
       return position_dependent;
     }
 
-    /// Whether it depends on a variable beside the dim first ones and time.
+    /// Whether it depends on a variable other than the first dim ones and t.
     bool
     depends_on_additional_variable() const
     {
       return has_additional_variable;
     }
 
-    /// Whether it depends on time and has conditions or steps in it; poles are
-    /// not looked for.
+    /// Whether the expression depends on time and contains conditions, steps or
+    /// piecewise constant tables; poles are not detected.
     bool
     may_jump() const;
 
-    /// Whether it depends on time and its first derivative may jump.
+    /// Whether the expression depends on time and its time derivative may jump.
     bool
     may_have_kinks() const;
 
-    /// The arguments at which tables that it calls have a row.
+    /// The arguments in the rows of all tables that the expression calls.
     std::vector<double>
     rows_of_tables() const;
 
@@ -125,7 +126,7 @@ namespace Viscoplastic
       return entry;
     }
 
-    /// Whether both are of the same text; not of functions that have none.
+    /// Whether both have the same text and variables; false for functions.
     bool
     is_written_as(const Expression &other) const
     {
@@ -147,11 +148,11 @@ namespace Viscoplastic
     bool                                 has_additional_variable = false;
     double                               constant;
     std::unique_ptr<FunctionParser<dim>> parser;
-    Function                             function; // if there is no parser
+    Function                             function; // used if there is no parser
   };
 
 
-  /// Expressions, one a component, separated by semicolons in the file.
+  /// A vector of expressions, which are separated by semicolons in the file.
   template <int dim>
   class VectorExpression
   {
@@ -163,7 +164,7 @@ namespace Viscoplastic
     using Function =
       std::function<Tensor<1, dim>(const Point<dim> &, const double)>;
 
-    /// The dim components of one function, which vector() calls once for all.
+    /// The dim components of one function, which vector() evaluates only once.
     VectorExpression(const Function &function, const std::string &entry);
 
     /// A component for each function.
@@ -199,7 +200,7 @@ namespace Viscoplastic
       return true;
     }
 
-    /// Whether it has the same text as another one, and is the same function.
+    /// Whether all components are written as those of @p other.
     bool
     is_written_as(const VectorExpression &other) const
     {
@@ -217,11 +218,11 @@ namespace Viscoplastic
 
   private:
     std::vector<Expression<dim>> components;
-    Function                     function; // of all components, or none
+    Function                     function; // vector-valued, if any
   };
 
 
-  /// A datum of a scene that may be missing: nothing if @p text is empty or
+  /// Parse an optional datum of a scene; returns nothing if @p text is empty or
   /// all components are identically zero.
   template <int dim>
   std::optional<VectorExpression<dim>>

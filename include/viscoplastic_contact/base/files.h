@@ -10,55 +10,54 @@
 
 namespace Viscoplastic
 {
-  // Files, read and written so that nothing that goes wrong is overlooked.
-  // Every function throws ExcMessage with a sentence that names the file and
-  // the reason that the system gives, e.g. a full disk. All files are regular
-  // ones: a pipe would hang, a device has no end, and results that follow a
-  // link would overwrite the file of somebody else.
+  // Functions that read and write files and check every operation. Each of them
+  // throws ExcMessage with a sentence that names the file and the reason given
+  // by the system, e.g. a full disk. Only regular files are accepted: reading a
+  // pipe may hang, a device has no end, and writing through a link may
+  // overwrite a file elsewhere.
 
-  /// Throws unless @p name is a regular file and no link, or nothing yet: for
-  /// streams that are going to write into it.
+  /// Throw unless @p name is a regular file (no link) or does not exist; to be
+  /// called before a stream writes into it.
   void
   require_writable_file(const std::string &name);
 
-  /// The contents of a file; nothing if there is no such file. A file that is
-  /// there and cannot be read is an error.
+  /// Return the contents of a file, or nothing if there is no such file. Throws
+  /// if the file exists and cannot be read.
   std::optional<std::string>
   read_file_if_any(const std::string &name);
 
-  /// Write a file and put it to disk. A crash may leave a part of it.
+  /// Write a file and flush it to disk. A crash may leave a part of it.
   void
   write_file(const std::string &name, const std::string &bytes);
 
-  /// Replace a file at once: whatever happens, it is the old one or the new
-  /// one. The new one is written under the name with `.part' and renamed.
-  ///
-  /// With @p to_disk that holds also if the machine loses its power, which
-  /// takes some milliseconds.
+  /// Replace a file atomically: whatever happens, the old or the new contents
+  /// are there. The new contents are written to a file with the suffix `.part',
+  /// which is then renamed. With @p to_disk this holds also for a power
+  /// failure, at a cost of some milliseconds.
   void
   replace_file(const std::string &name,
                const std::string &bytes,
                const bool         to_disk = false);
 
-  /// The same from parts: what @p next returns until that is nothing.
+  /// The same, with the parts that @p next returns before an empty one.
   void
   replace_file(const std::string                  &name,
                const std::function<std::string()> &next);
 
-  /// Put a file to disk, with what other streams have written into it.
+  /// Flush a file to disk, including what other streams have written into it.
   void
   synchronize(const std::string &file);
 
-  /// Put the names in a directory to disk.
+  /// Flush the entries of a directory to disk.
   void
   synchronize_directory(const std::string &name);
 
 
 
-  /// Keeps other processes out of a directory that this one writes into. The
-  /// lock is one of the operating system on the file viscoplastic_contact.lock
-  /// there: it vanishes with the process, however that ends, and the file alone
-  /// keeps nobody out. Not collective: one rank holds the lock for all.
+  /// Keeps other processes out of a directory that this one writes into by an
+  /// operating system lock (flock) on the file viscoplastic_contact.lock there.
+  /// The lock vanishes with the process, however that ends, and a file that is
+  /// left over locks nothing. Not collective: one rank holds the lock for all.
   class DirectoryLock
   {
   public:
@@ -70,11 +69,11 @@ namespace Viscoplastic
     DirectoryLock &
     operator=(const DirectoryLock &) = delete;
 
-    /// Take the lock of a directory, unless this object has one already. @p
-    /// otherwise: what else the user may do than wait. Throws
-    /// ExcMessage if another process has it, or if the lock is no regular file.
-    /// Without a lock goes on where there is none to be had: the directory does
-    /// not exist yet or cannot be written, or its file system has no locks.
+    /// Take the lock of a directory, unless this object has one already. Throws
+    /// ExcMessage if another process has it, or if the lock is no regular file;
+    /// @p otherwise tells the user what to do other than wait. If no lock is
+    /// possible (the directory does not exist or cannot be written, or its file
+    /// system has no locks), return without one.
     void
     acquire(const std::string &directory,
             const std::string &otherwise = "choose another directory");
@@ -84,10 +83,10 @@ namespace Viscoplastic
     int         descriptor = -1;
   };
 
-  /// The full path of a file that comes with the program, which is named as in
-  /// the sources ("doc/index.md", "contrib/convert_mesh"): beside an installed
-  /// program, otherwise where the sources were when it was built. Empty if it
-  /// is in neither place.
+  /// Return the full path of a file that comes with the program and is named as
+  /// in the source directory ("doc/index.md", "contrib/convert_mesh"): from the
+  /// installation of the program, otherwise from the source directory. Empty if
+  /// it is in neither place.
   std::string
   path_of_resource(const std::string &name);
 
@@ -95,10 +94,9 @@ namespace Viscoplastic
   std::uint32_t
   checksum(const std::string &bytes);
 
-  /// JSON as our files have it: indented, with a newline at the end. Numbers
-  /// have all their digits, or are null where they are not finite. Texts may
-  /// hold any bytes, as names of files do: what is no UTF-8 becomes the
-  /// replacement character.
+  /// Return JSON as text: indented, with a newline at the end. Numbers have all
+  /// their digits, or are null if not finite. Bytes that are no valid UTF-8, as
+  /// in names of files, become the replacement character.
   std::string
   json_text(const nlohmann::ordered_json &json);
 } // namespace Viscoplastic

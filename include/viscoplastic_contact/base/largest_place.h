@@ -12,15 +12,15 @@ namespace Viscoplastic
 {
   using namespace dealii;
 
-  /// The largest of some values that are not negative, and where it is: of
-  /// values that are equal up to solver tolerances, the one with the least
-  /// coordinates, so that the place does not depend on the number of ranks.
+  /// Finds the largest of some nonnegative values and its place: among values
+  /// that are equal up to solver tolerances, the place with the least
+  /// coordinates is chosen, so that it does not depend on the number of ranks.
   template <int dim>
   class LargestPlace
   {
   public:
-    /// Whether a value would be the largest one or equal to it: for places that
-    /// cost something.
+    /// Return whether add() might take the place of this value; to be asked
+    /// first where places are expensive to compute.
     bool
     may_take(const double value) const
     {
@@ -40,7 +40,7 @@ namespace Viscoplastic
         }
     }
 
-    /// Take the largest value of all ranks, and its place. Collective.
+    /// Find the largest value of all ranks and its place. Collective.
     void
     reduce(const MPI_Comm communicator)
     {
@@ -56,14 +56,14 @@ namespace Viscoplastic
         }
     }
 
-    /// Zero if nothing is positive.
+    /// Return the largest value; zero if none is positive.
     double
     value() const
     {
       return largest_value;
     }
 
-    /// The origin if nothing is positive.
+    /// Return its place; the origin if no value is positive.
     const Point<dim> &
     position() const
     {
@@ -73,7 +73,7 @@ namespace Viscoplastic
   private:
     static constexpr double tolerance = 1e-6;
 
-    /// Whether coordinates are smaller, beyond rounding.
+    /// Compare coordinates lexicographically, up to rounding.
     static bool
     is_before(const Point<dim> &x, const Point<dim> &y)
     {

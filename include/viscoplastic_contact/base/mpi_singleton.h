@@ -5,20 +5,21 @@
 
 namespace Viscoplastic
 {
-  /// Let a process that nobody launches as part of an MPI job run on its own.
+  /// Let a process that is not launched as part of an MPI job run on its own.
   ///
   /// Without mpirun, MPI_Init of Open MPI 4 starts a daemon (orted) for each
-  /// process, which only MPI_Comm_spawn would need. The daemon takes time to
-  /// start, outlives a process that is killed, and simultaneous starts may
-  /// fail. Without the daemon, all such processes share one directory for their
-  /// session, which the first that ends takes from those that start: they need
-  /// none.
-  /// MPI_Init also asks the libraries of networks for their adapters, and that
-  /// of Omni-Path waits a quarter of a second for them where there are none:
-  /// `ob1' is what talks without these libraries. Call this before MPI_Init; it
-  /// says so to Open MPI unless the environment is that of a launcher or says
-  /// something else. Other implementations of MPI take no notice. Returns
-  /// whether nobody has launched the process as part of a job.
+  /// process, which only MPI_Comm_spawn needs. The daemon takes time to start,
+  /// outlives a process that is killed, and simultaneous starts may fail.
+  /// Without daemons, all such processes would share one session directory,
+  /// which the first one to end removes while others start; they do not need
+  /// it. MPI_Init also lets network libraries look for adapters, and that of
+  /// Omni-Path waits a quarter of a second if there are none; the component
+  /// `ob1' does without these libraries.
+  ///
+  /// Call this before MPI_Init: unless a launcher is present, it sets variables
+  /// of Open MPI that turn all this off, if they are not set in the
+  /// environment. Other implementations of MPI ignore them. Returns whether
+  /// there is no launcher.
   inline bool
   run_without_mpi_job()
   {

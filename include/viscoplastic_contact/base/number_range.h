@@ -7,20 +7,20 @@
 /// range of floating-point numbers long before the numbers themselves do: the
 /// square of 1e-170 is zero. A run whose largest displacement, stress or force
 /// is that small would report energies of zero, and one of 1e170 infinite ones.
-/// Such runs are refused; a few small steps in a run of ordinary ones are not.
+/// Such runs are refused, but not a few small steps in an ordinary run.
 namespace Viscoplastic
 {
-  /// Sizes of the solution (displacement, force, stress) that a run may have.
-  /// Squares of errors which are 1e-10 of that are still ordinary numbers.
+  /// The permitted size of the solution (displacement, force, stress). Squares
+  /// of errors that are 1e-10 of it are still normal numbers.
   constexpr double least_size = 1e-120, largest_size = 1e120;
-  /// Elastic moduli: cubes of entries of the matrix are ordinary numbers.
+  /// Elastic moduli: cubes of matrix entries are still normal numbers.
   constexpr double least_modulus = 1e-70, largest_modulus = 1e70;
   /// The sizes of the body and of its cells, and times and time steps.
   constexpr double least_length = 1e-30, largest_length = 1e30;
   constexpr double least_time = 1e-30, largest_time = 1e30;
 
 
-  /// Throws ExcMessage unless a value lies in a range.
+  /// Throw ExcMessage unless a value lies in a range.
   inline void
   require_in_range(const std::string &what,
                    const double       value,
@@ -36,8 +36,8 @@ namespace Viscoplastic
   }
 
 
-  /// The norm of a tensor or vector also where squares of its entries leave the
-  /// range of floating-point numbers; otherwise norm() to the last bit.
+  /// Return the norm of a tensor or vector even if squares of its entries
+  /// overflow or underflow; otherwise the result is norm(), bit by bit.
   template <typename TensorType>
   double
   stable_norm(const TensorType &tensor)
@@ -45,7 +45,7 @@ namespace Viscoplastic
     const double norm = tensor.norm();
     if (norm > 1e-140 && norm < 1e140)
       return norm;
-    // A power of two, which changes no digit.
+    // Scaling by a power of two changes no digit.
     constexpr double factor = 0x1p+600;
     return norm < 1. ? (tensor * factor).norm() / factor :
                        (tensor / factor).norm() * factor;

@@ -10,14 +10,14 @@
 
 namespace Viscoplastic
 {
-  /// How long the rest of a run takes, from what steps have taken: in
-  /// proportion to the number of cells. Those of the last third of the run so
-  /// far count, or some ten: of a long run enough to have its share of steps
-  /// that write fields. The first step sets up what others use.
+  /// Estimates the time that the rest of a run takes, in proportion to the
+  /// number of cells, from the last third of the steps so far, or some ten: in
+  /// long runs these include their share of steps that write fields. The first
+  /// step is ignored since it sets up what later ones reuse.
   class RemainingTime
   {
   public:
-    /// A step has taken @p seconds.
+    /// Record that a step has taken @p seconds.
     void
     add_step(const double seconds, const double n_cells)
     {
@@ -28,8 +28,8 @@ namespace Viscoplastic
       weighted_cells   = kept * weighted_cells + n_cells;
     }
 
-    /// The seconds that @p n_steps further steps are expected to take on a mesh
-    /// of @p n_cells cells.
+    /// Return the expected time in seconds of @p n_steps further steps on a
+    /// mesh of @p n_cells cells.
     double
     seconds(const double n_steps, const double n_cells) const
     {
@@ -45,10 +45,10 @@ namespace Viscoplastic
 
 
 
-  /// The size of steps to come, where they are chosen on the way: the mean of
-  /// those that have been made, with weights that halve in about seven steps,
-  /// or the last one if that is longer. A short one to a time that has to be
-  /// met is no sign of others.
+  /// Predicts the size of future adaptive time steps: the mean of past sizes,
+  /// with weights that halve in about seven steps, or the last size if that is
+  /// larger. A single short step, made to reach a prescribed time, says little
+  /// about the following ones.
   class ExpectedStep
   {
   public:
@@ -66,7 +66,8 @@ namespace Viscoplastic
       return std::max(last, mean());
     }
 
-    /// The first ones may be tiny, and how fast they grow shows in some more.
+    /// Whether there are enough steps for a prediction: the first ones may be
+    /// tiny and growing fast.
     bool
     is_known() const
     {
@@ -85,42 +86,41 @@ namespace Viscoplastic
 
 
 
-  /// What a line of progress says of a step, as far as a scene has it.
+  /// The data of a step for a progress line, as far as the scene has them.
   struct StepProgress
   {
     unsigned int n;
     double       t, k;
-    /// The number of active cells of the whole mesh.
+    /// The global number of active cells.
     double n_cells;
-    /// Corrections of the active set, and the slipping part of the area; in
-    /// scenes with friction.
+    /// Corrections of the active set, and the slipping fraction of the contact
+    /// area, in scenes with friction.
     std::optional<unsigned int> contact_iterations = {};
     std::optional<double>       slipping           = {};
     /// The largest slip rate, as text with its unit.
     std::string slip_rate = {};
-    /// The estimate by which an adaptive scene without error estimate refines.
+    /// The refinement indicator of an adaptive scene without error estimate.
     std::optional<double> error_estimate = {};
-    /// The total error estimate over the energy norm of the solution; in scenes
-    /// with an error estimate.
+    /// The total error estimate divided by the energy norm of the solution, in
+    /// scenes with an error estimate.
     std::optional<double> relative_error = {};
-    /// With adaptive steps: the fraction of the time that is done, and the
-    /// expected number of steps, once it is known.
+    /// With adaptive time steps: the elapsed fraction of the simulated time,
+    /// and the expected number of steps once it is known.
     std::optional<double> done           = {};
     std::optional<double> expected_steps = {};
   };
 
 
 
-  /// Tells how a run proceeds, in lines: of 200 equal parts of the run each has
-  /// at most one, and another one if the mesh changes or slip begins or ends in
-  /// it; after a long silence the next step has one, too.
-  /// Lines tell how many steps have been left out before them. statistics.csv
-  /// has all steps.
+  /// Prints the progress of a run: at most one line in each of 200 equal parts
+  /// of it, and one more if the mesh changes or slip begins or ends there;
+  /// after a long silence the next step is printed, too. Each line tells how
+  /// many steps have been left out before it. statistics.csv has all steps.
   class Progress
   {
   public:
-    /// @p n_steps: of the run, unless each step says how many it expects.
-    /// @p time_unit stands behind times, such as " day".
+    /// @p n_steps is the number of steps of the run; it is not used if steps
+    /// have `expected_steps`. @p time_unit follows times, such as " day".
     Progress(Console           &console,
              const unsigned int n_steps,
              const std::string &time_unit = "")
@@ -129,18 +129,18 @@ namespace Viscoplastic
       , time_unit(time_unit)
     {}
 
-    /// A step has been made, @p elapsed seconds after the beginning of the
-    /// run; the initial state is step 0. In the order of steps, on all ranks.
+    /// Report a step that ends @p elapsed seconds after the beginning of the
+    /// run; the initial state is step 0. To be called in order, on all ranks.
     void
     report(const StepProgress &step, const double elapsed);
 
   private:
     static constexpr unsigned int max_lines = 200;
-    /// The next step gets a line after so many seconds: less than a Heartbeat
-    /// waits for, since lines of steps tell more.
+    /// The seconds of silence after which the next step is printed: less than
+    /// for a Heartbeat, since lines of steps tell more.
     static constexpr double long_silence = 8.;
 
-    /// Whether a step other than the last one gets a line; @p done is the part
+    /// Whether to print a step other than the last one; @p done is the fraction
     /// of the run that has been made.
     bool
     is_worth_a_line(const StepProgress &step, const double done);
@@ -151,20 +151,20 @@ namespace Viscoplastic
     RemainingTime      remaining;
     double             last_elapsed = 0.;
 
-    /// Steps without a line since the last one with a line.
+    /// The number of steps left out since the last line.
     unsigned int n_left_out = 0;
     /// The number of cells in the last step, and whether none (0), some (1) or
     /// all (2) of the contact face slipped in it.
     double last_cells = 0.;
     int    last_slip  = 0;
-    /// The part of the run that had been done at the last line, and at the last
-    /// one because of an event; negative before the first.
+    /// The fraction of the run at the last line, and at the last line caused by
+    /// an event; negative before the first.
     double done_at_line = -1., done_at_event = -1.;
   };
 
 
 
-  /// Seconds for people: `45 s', `12 min', `3.4 h', `2.1 d'.
+  /// Return seconds in a readable unit: `45 s', `12 min', `3.4 h', `2.1 d'.
   std::string
   duration(const double seconds);
 
@@ -179,17 +179,16 @@ namespace Viscoplastic
     linear
   };
 
-  /// While an object of this class lives, a run that has said nothing for some
-  /// time says where it is, from within the iterations of a step: "Still at
-  /// step 3 (t = 0.3): 2 Newton, 17 contact, 340 linear iterations  elapsed 31
-  /// s". Iterations and steps report to it by count() and begin_step(), which
-  /// may be called without an object and then do nothing. Not for several
-  /// threads.
+  /// While an object of this class lives, a run that is silent for some time
+  /// prints where it is, from within the iterations of a step: "Still at step 3
+  /// (t = 0.3): 2 Newton, 17 contact, 340 linear iterations  elapsed 31 s".
+  /// Iterations and steps report by count() and begin_step(), which do nothing
+  /// if there is no such object. Not thread-safe.
   class Heartbeat
   {
   public:
-    /// Speaks on @p console if that has been silent for @p seconds, or a
-    /// hundredth of the run, whichever is longer.
+    /// Print on @p console if that has been silent for @p seconds, or for a
+    /// hundredth of the run if that is longer.
     explicit Heartbeat(Console &console, const double seconds = 10.);
     ~Heartbeat();
 
@@ -197,11 +196,11 @@ namespace Viscoplastic
     Heartbeat &
     operator=(const Heartbeat &) = delete;
 
-    /// A step, or another try of one, is begun.
+    /// Record that a step, or another attempt at it, begins.
     static void
     begin_step(const unsigned int n, const double t);
 
-    /// An iteration of this kind is made.
+    /// Count an iteration of this kind.
     static void
     count(const Loop loop);
 

@@ -5,9 +5,8 @@
 
 namespace Viscoplastic
 {
-  /// A block of a matrix in the registers of any processor: four numbers at a
-  /// time, which are a row of a 3 x 3 block and zero, or both rows of a 2 x 2
-  /// block.
+  /// A dim x dim block in vectors of four numbers: each row of a 3 x 3 block
+  /// padded by zero, or both rows of a 2 x 2 block.
   template <int dim>
   struct PackedBlock
   {
@@ -20,13 +19,14 @@ namespace Viscoplastic
   };
 
 
-  /// The data of products with rows of a matrix, as plain pointers: see
+  /// The data of a matrix for products with its rows, as plain pointers; see
   /// SharedRows.
   template <int dim>
   struct RowTable
   {
-    /// A row without the diagonal: columns of lower owned nodes first, and
-    /// where the values begin.
+    /// A row without the diagonal: where its columns and values begin, the
+    /// number of its columns that are owned nodes before it, which come first,
+    /// and the number of all columns.
     struct Row
     {
       std::size_t  columns, values;
@@ -40,7 +40,7 @@ namespace Viscoplastic
   };
 
 
-  /// The innermost loops of multigrid, compiled for a kind of processor. See
+  /// The innermost loops of multigrid, compiled for one kind of processor. See
   /// SharedRows.
   template <int dim>
   struct RowKernels
@@ -59,8 +59,8 @@ namespace Viscoplastic
                             const float *b);
   };
 
-  /// The rows of a symmetric matrix in double precision: the diagonal and the
-  /// upper triangle, with the number of each one's first block.
+  /// The rows of a symmetric matrix in double precision: diagonal and upper
+  /// triangle. `first_block` is the index of the first block of each row.
   struct SymmetricRows
   {
     unsigned int        n_rows;

@@ -29,9 +29,9 @@ namespace Viscoplastic
       bool is_late = false;
     };
 
-    /// What has been asked of any rank since the last call, the same on all of
-    /// them; @p checkpoint and @p is_late, that there is no time for another
-    /// step, add what this rank knows. Collective.
+    /// Return what has been requested on any rank since the last call, the same
+    /// on all ranks. @p checkpoint and @p is_late (no time is left for another
+    /// step) are the requests of this rank beside signals. Collective.
     Request
     agree(const MPI_Comm communicator,
           const bool     checkpoint,
@@ -40,18 +40,18 @@ namespace Viscoplastic
 
 
 
-  /// A write beyond the limit on file sizes (`ulimit -f') shall fail like one
-  /// on a full disk, not end the process.
+  /// Ignore SIGXFSZ: a write beyond the limit on file sizes (`ulimit -f') fails
+  /// like one on a full disk and does not end the process.
   void
   ignore_file_size_signal();
 
 
 
-  /// While an object of this class lives, a call of exit() and an exception
-  /// that nobody can catch, both of which code from a shared library of laws
-  /// may come with, end the process with a sentence and the exit code 1: a run
-  /// that ends early must not look like one that has succeeded. Objects may be
-  /// nested, the last one says what the program was doing.
+  /// While an object of this class lives, a call of exit() or an uncaught
+  /// exception, as code from a shared library of laws may cause, ends the
+  /// process with a message and exit code 1: a run that ends early must not
+  /// look successful. Objects may be nested; the innermost one says what the
+  /// program was doing.
   class UnexpectedEnd
   {
   public:

@@ -9,8 +9,7 @@ namespace Viscoplastic
 {
   using namespace dealii;
 
-  /// Stands in a subsection of a handler for the life of the object, and leaves
-  /// it also when something is refused there.
+  /// Enters a subsection and leaves it on destruction, also after exceptions.
   class Subsection
   {
   public:

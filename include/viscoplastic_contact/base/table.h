@@ -9,7 +9,7 @@ namespace Viscoplastic
 {
   /// The columns of a CSV file as functions of its first column, the argument:
   /// piecewise linear, or piecewise constant with the value of the last row
-  /// that has been reached.
+  /// whose argument has been reached.
   class DataTable
   {
   public:
@@ -22,16 +22,16 @@ namespace Viscoplastic
     /// How a table extrapolates before its first row and after its last one.
     enum class Outside
     {
-      refuse,  // not there
-      constant // those of the nearest row
+      refuse,  // no value
+      constant // value of the nearest row
     };
 
-    /// Read the text of a file. @p section is what the parameter file calls the
-    /// table, such as "Table 1"; messages have both names. The text is a line
-    /// with the names of the columns, and lines of as many finite numbers each,
-    /// the first of which ascend; all separated by commas. Empty lines and
-    /// those that begin with `#' do not count. Throws ExcMessage with file and
-    /// line.
+    /// Parse the @p text of @p file; @p section is the name of the table in the
+    /// parameter file, such as "Table 1". Messages have both names. The first
+    /// line has the names of the columns, each other line as many finite
+    /// numbers; all are separated by commas, and the first column ascends.
+    /// Empty lines and lines that begin with `#' are skipped. Throws ExcMessage
+    /// with file and line.
     DataTable(const std::string  &text,
               const std::string  &file,
               const std::string  &section,
@@ -50,11 +50,11 @@ namespace Viscoplastic
         , number(number)
       {}
 
-      /// The value at a place; not a number where the table has none.
+      /// The value at @p argument; NaN where the table has none.
       double
       value(const double argument) const;
 
-      /// Why it has none there, as a sentence without its end.
+      /// Why there is no value at @p argument, as a sentence without full stop.
       std::string
       explain_gap(const double argument) const;
 
@@ -81,8 +81,8 @@ namespace Viscoplastic
     DataTable &
     operator=(const DataTable &) = delete;
 
-    /// The arguments of the rows, ascending: where linear functions have kinks
-    /// and constant ones jump.
+    /// The arguments of the rows in ascending order, at which linear
+    /// interpolation has kinks and constant interpolation jumps.
     const std::vector<double> &
     nodes() const
     {
@@ -112,16 +112,16 @@ namespace Viscoplastic
 
   using Tables = std::vector<std::shared_ptr<const DataTable>>;
 
-  /// The tables that expressions know which are made from now on: those of the
-  /// parameter file that has been read last. Throws ExcMessage if a name is
-  /// that of two columns, or of something else that expressions know.
+  /// Set the tables that are known to expressions created after this call:
+  /// those of the parameter file that was read last. Throws ExcMessage if two
+  /// columns have the same name, or one that expressions use otherwise.
   void
   use_tables(const Tables &tables);
 
   const Tables &
   tables_in_use();
 
-  /// The columns that a text calls as functions.
+  /// Return the columns of the tables in use whose names @p text mentions.
   std::vector<std::shared_ptr<const DataTable::Column>>
   columns_in(const std::string &text);
 } // namespace Viscoplastic

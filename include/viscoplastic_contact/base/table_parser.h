@@ -19,11 +19,11 @@ namespace Viscoplastic
 {
   using namespace dealii;
 
-  /// muParser with the variables, constants and functions of deal.II's
-  /// FunctionParser, and with columns of tables as functions, which that keeps
-  /// muParser from. Between the coordinates and time there may be one more
-  /// variable. A value costs half of what deal.II's does, which looks for the
-  /// parser of the thread; this one must not be shared by threads.
+  /// A FunctionParser with the same variables, constants and functions as in
+  /// deal.II that can also call columns of tables, which deal.II does not let
+  /// users add to muParser. One more variable may stand between the coordinates
+  /// and time. Evaluation costs half of that in deal.II, which looks up the
+  /// parser of the thread; this class is not thread-safe.
   template <int dim>
   class ParserWithTables : public FunctionParser<dim>
   {
@@ -71,7 +71,7 @@ namespace Viscoplastic
                                      &evaluate,
                                      &call,
                                      false);
-          // muParser takes no blank between a function and its parenthesis.
+          // muParser accepts no blank between a function and its parenthesis.
           std::string text;
           for (const char c : expressions[0])
             {
@@ -81,7 +81,7 @@ namespace Viscoplastic
             }
           parser.SetExpr(text);
         }
-      catch (const mu::ParserError &error) // which is no std::exception
+      catch (const mu::ParserError &error) // not derived from std::exception
         {
           AssertThrow(false, ExcMessage(error.GetMsg()));
         }
@@ -105,7 +105,7 @@ namespace Viscoplastic
       return 0.;
     }
 
-    /// The value of the variable between the coordinates and time.
+    /// Set the variable between the coordinates and time.
     void
     set_additional_variable(const double value) const
     {
@@ -151,7 +151,7 @@ namespace Viscoplastic
       return result;
     }
 
-    // What an evaluation changes.
+    // Modified by evaluations.
     mutable mu::Parser          parser;
     mutable std::vector<double> variables;
     mutable std::string         gap;

@@ -17,13 +17,12 @@ namespace dealii
 /// in the documentation are equations of that paper.
 namespace Viscoplastic
 {
-  // Declared only: their headers are heavy, and rooms that see nothing of
-  // linear algebra but references do without. See base/linear_algebra.h.
+  // These types are only declared, since their headers are heavy and code that
+  // only passes references does without. See base/linear_algebra.h.
   using DistributedVector = dealii::TrilinosWrappers::MPI::Vector;
   class DistributedMatrix;
 
-  /// Ids of boundaries and materials go up to this in mesh files, parameter
-  /// files and expressions.
+  /// The largest id of boundaries and materials in files and expressions.
   constexpr unsigned int largest_id = 999999999;
 
 
@@ -39,19 +38,18 @@ namespace Viscoplastic
   };
 } // namespace Viscoplastic
 
-/// Explicit instantiation of a function template of the dimension alone. One of
-/// several with the same name has to be written out.
+/// Explicit instantiation of a function template whose only parameter is the
+/// dimension. Overloaded functions have to be instantiated by hand.
 #define VISCOPLASTIC_INSTANTIATE(function)    \
   template decltype(function<2>) function<2>; \
   template decltype(function<3>) function<3>
 
-/// Explicit instantiation of a class template of the dimension alone.
+/// Explicit instantiation of a class template with the only parameter dim.
 #define VISCOPLASTIC_INSTANTIATE_CLASS(Class) \
   template class Class<2>;                    \
   template class Class<3>
 
-/// As VISCOPLASTIC_INSTANTIATE, of a member function without overloads that
-/// stands apart from the others of its class, in a file of its own.
+/// The same for a member function without overloads that has its own file.
 #define VISCOPLASTIC_INSTANTIATE_MEMBER(Class, function)       \
   template MemberFunction<decltype(&Class<2>::function)>::type \
     Class<2>::function;                                        \

@@ -8,13 +8,14 @@
 
 namespace Viscoplastic
 {
-  /// Exponents of length, time, stress and temperature, of which the units of
-  /// everything in a scene are products: a force is a stress times length^2.
+  /// Exponents of length, time, stress and temperature, of whose powers all
+  /// units in a scene are products. For example, a force is a stress times
+  /// length^2.
   struct Dimension
   {
     double length = 0., time = 0., stress = 0., temperature = 0.;
 
-    /// Up to the rounding of exponents that are no whole numbers.
+    /// Compare up to rounding of fractional exponents.
     bool
     operator==(const Dimension &other) const;
 
@@ -31,7 +32,7 @@ namespace Viscoplastic
     }
   };
 
-  /// The dimension in words: "a stress", "a velocity", "length^2 / time".
+  /// Return words: "a stress", "a velocity", "length^2 time^-1".
   std::string
   in_words(const Dimension &dimension);
 
@@ -46,8 +47,7 @@ namespace Viscoplastic
     double si = 1.;
   };
 
-  /// The names of all units that read_unit() knows, or of those of one
-  /// dimension.
+  /// Return all names that read_unit() knows, or those of one dimension.
   std::vector<std::string>
   names_of_units(const std::optional<Dimension> &dimension = {});
 
@@ -57,24 +57,23 @@ namespace Viscoplastic
   struct UnitInText
   {
     Unit unit;
-    /// Position in the text behind the unit.
+    /// The position in the text after the unit.
     std::size_t end;
-    /// A name in it that is no unit; the others mean nothing then.
+    /// A name that is no unit, if any; the other members are meaningless then.
     std::string unknown_name;
   };
 
-  /// The unit that follows a number ending at @p begin of @p text: after a
-  /// blank, as in `25 MPa', `0.022 MPa/m', `1e-5 MPa^-5/day', `3 Pa s', or
-  /// after a slash, as in `5/day'. What may be a part of a larger expression is
-  /// left to it: `25 MPa*x' and `25 MPa/2' go on behind `MPa'. Nothing where a
-  /// number has no unit.
+  /// Read the unit that follows a number ending at position @p begin of @p
+  /// text: after a blank, as in `25 MPa', `3 Pa s', `0.022 MPa/m', `1e-5
+  /// MPa^-5/day', or after a slash, as in `5/day'. Reading stops before what
+  /// may be a part of a larger expression: after `MPa' in `25 MPa*x' and `25
+  /// MPa/2'. Returns nothing if there is no unit.
   std::optional<UnitInText>
   read_unit(const std::string &text, const std::size_t begin);
 
 
 
-  /// The physical quantities of numbers in results, from which their units
-  /// follow.
+  /// Physical quantities of numbers in results, which determine their units.
   enum class Quantity
   {
     pure_number,
@@ -86,31 +85,31 @@ namespace Viscoplastic
     velocity,
     stress,
     force,         // 2D: by length
-    axial_force,   // of a whole section
+    axial_force,   // of a whole cross section
     energy,        // 2D: by length
     work_per_area, // energy by area
     energy_norm,   // energy^1/2
     rate_norm,     // (energy/time)^1/2
     stress_norm,   // stress volume^1/2
     temperature,   // always K
-    wall_time      // s whatever the units of the scene
+    wall_time      // always s
   };
 
 
 
-  /// The units of a scene: those of numbers without unit in its parameter file
-  /// and of all results. There may be none; then nothing is known but that they
-  /// are consistent.
+  /// The units of a scene: those of all results and of numbers without unit in
+  /// its parameter file. Without declared units, numbers are only assumed to be
+  /// consistent.
   class Units
   {
   public:
-    /// No units: numbers are taken to be consistent.
+    /// Declare no units.
     Units() = default;
 
-    /// The units with these names or products, of which the fourth may be given
-    /// in the place of the third. All empty: none. Throws ExcMessage with a
-    /// sentence about the entries `Length', `Time', `Stress' and `Force' of the
-    /// subsection `Units'.
+    /// Declare units by their names or by products of names, with either @p
+    /// stress or @p force; if all are empty, none are declared. Throws
+    /// ExcMessage with a sentence about the entries `Length', `Time', `Stress'
+    /// and `Force' of the subsection `Units'.
     Units(const std::string &length,
           const std::string &time,
           const std::string &stress,
@@ -122,7 +121,7 @@ namespace Viscoplastic
       return length.si > 0.;
     }
 
-    /// The size in SI units of the scene's unit of this @p dimension.
+    /// Return the scene's unit of this @p dimension in SI units.
     double
     si(const Dimension &dimension) const
     {
@@ -131,13 +130,13 @@ namespace Viscoplastic
              std::pow(stress.si, dimension.stress);
     }
 
-    /// The name for @p quantity of a scene in @p dim dimensions, such as "MN/m"
-    /// of a force in plane strain; empty without units.
+    /// Return the unit of @p quantity in a scene of @p dim dimensions, such as
+    /// "MN/m" for a force in plane strain; empty without units.
     std::string
     name(const Quantity quantity, const unsigned int dim = 3) const;
 
-    /// " [MPa]", behind the name of a column or field; empty without units and
-    /// for pure numbers.
+    /// Return " [MPa]" to follow the name of a column or field; empty without
+    /// units and for pure numbers.
     std::string
     label(const Quantity quantity, const unsigned int dim) const
     {
@@ -145,7 +144,7 @@ namespace Viscoplastic
       return unit.empty() ? "" : " [" + unit + ']';
     }
 
-    /// " MPa", behind a number; likewise.
+    /// Return " MPa" to follow a number; empty in the same cases.
     std::string
     suffix(const Quantity quantity, const unsigned int dim = 3) const
     {
@@ -153,15 +152,15 @@ namespace Viscoplastic
       return unit.empty() ? "" : ' ' + unit;
     }
 
-    /// Whether results in two dimensions are those of whole bodies, as of
-    /// bodies of revolution, not by length.
+    /// Whether results in two dimensions are those of whole bodies (as for
+    /// bodies of revolution), not per unit length.
     bool are_of_whole_bodies = false;
 
     Unit length{"", {1., 0., 0.}, 0.}, time{"", {0., 1., 0.}, 0.},
       stress{"", {0., 0., 1.}, 0.};
   };
 
-  /// The name of a column or field without the label of its unit.
+  /// Return the name of a column or field without the label of its unit.
   std::string
   without_label(const std::string &name);
 } // namespace Viscoplastic

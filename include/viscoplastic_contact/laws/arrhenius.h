@@ -12,10 +12,9 @@ namespace Viscoplastic
   ///
   ///     exp(-Q/R (1/T - 1/T_L)) G(t, sigma, eps),
   ///
-  /// where G is that of @p law, which holds at the temperature T_L, infinity
-  /// for a factor exp(-Q/(R T)); @p activation_temperature is Q/R. Points that
-  /// are not above absolute zero have no rate: who evaluates the law makes sure
-  /// that there are none.
+  /// where G is the function of @p law, which holds at the temperature T_L. An
+  /// infinite T_L gives the factor exp(-Q/(R T)). @p activation_temperature is
+  /// Q/R. Callers must make sure that temperatures are above absolute zero.
   std::unique_ptr<ViscoplasticLaw>
   thermally_activated(std::unique_ptr<ViscoplasticLaw> law,
                       const double                     activation_temperature,

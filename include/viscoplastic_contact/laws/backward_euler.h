@@ -5,9 +5,9 @@
 
 namespace Viscoplastic
 {
-  /// The equation z - z_old - k G(t_n, E eps + z, eps) = 0 of one sample. Here
-  /// and below, G of a law with history variables is its step_rate(): @p point
-  /// has those of the beginning of the step.
+  /// The equation z - z_old - k G(t_n, E eps + z, eps) = 0 at one point. For
+  /// laws with history variables, G is step_rate() here and below: @p point has
+  /// the history variables at the beginning of the step.
   struct BackwardEulerEquation
   {
     const ViscoplasticLaw       &law;
@@ -24,8 +24,8 @@ namespace Viscoplastic
              k * law.step_rate(elastic + z, strain, k, stiffness, point);
     }
 
-    /// The norm of the residual at a trial state; not finite where the law has
-    /// no value.
+    /// Compute the residual @p F at a trial state and return its norm, which is
+    /// NaN where the law has no value.
     double
     try_residual(const SymmetricTensor<2, 3> &z, SymmetricTensor<2, 3> &F) const
     {
@@ -48,7 +48,7 @@ namespace Viscoplastic
       return std::sqrt(stress * stiffness.strain(stress));
     }
 
-    /// Newton's method; nothing if it fails.
+    /// Damped Newton's method; returns nothing if it fails.
     std::optional<SymmetricTensor<2, 3>>
     solve(SymmetricTensor<2, 3> z) const
     {
@@ -68,15 +68,15 @@ namespace Viscoplastic
           const double step_size = norm(step);
           if (!std::isfinite(step_size))
             return {};
-          // Rounding of F, which k r multiplies, does not matter: that of
-          // the correction does.
+          // Test the correction: rounding errors of F may be k r times as
+          // large.
           if (step_size <= 1e-12 * scale)
             return z + step;
           double damping = 1.;
           for (;; damping *= 0.5)
             {
-              // All that rounding leaves; beside a kink of the law, a shorter
-              // step does better.
+              // Accept the level of rounding, but only after damping, which
+              // helps beside a kink of the law.
               if (damping < 1e-3 && step_size <= 1e-9 * scale)
                 return z + step;
               if (damping < 1e-9)
@@ -98,13 +98,13 @@ namespace Viscoplastic
   };
 
 
-  /// Backward Euler for one sample at a given strain: the z that solves
+  /// Backward Euler at one point for a given strain: return the z that solves
   ///
   ///     z = z_old + k G(t_n, E eps + z, eps)
   ///
   /// by Newton's method from @p start, damped so that the residual decreases,
   /// and by continuation in k where that fails. @p point has the time t_n.
-  /// Throws ExcMessage if there is no solution within reach.
+  /// Throws ExcMessage if no solution is found.
   SymmetricTensor<2, 3>
   implicit_irreversible_stress(const ViscoplasticLaw       &law,
                                const SymmetricTensor<2, 3> &strain,
@@ -135,15 +135,15 @@ namespace Viscoplastic
   definite_tangent(const SymmetricTensor<4, 3> &tangent,
                    const Stiffness             &stiffness);
 
-  /// (I - k dG/dsigma)^-1: what relaxation in a step leaves of an error of z at
-  /// a given strain. For radial flow in isotropic bodies, as a map alone, since
-  /// it is applied once: deviators times one number, and what is along a
-  /// direction times another one more.
+  /// The map (I - k dG/dsigma)^-1, by which relaxation in a step reduces an
+  /// error of z at a given strain. Radial flow in isotropic bodies needs no
+  /// tensor: deviators are scaled by one factor, and their part along a
+  /// direction by another one in addition.
   struct ErrorRelaxation
   {
     double                               of_deviators = 1., more_along = 0.;
     SymmetricTensor<2, 3>                direction;
-    std::optional<SymmetricTensor<4, 3>> any; // in the place of these
+    std::optional<SymmetricTensor<4, 3>> any; // if set, used alone
 
     SymmetricTensor<2, 3>
     operator*(const SymmetricTensor<2, 3> &error) const
@@ -160,8 +160,8 @@ namespace Viscoplastic
     }
   };
 
-  /// Of radial flow that shortens the deviator of a trial stress by 1/(1 + a),
-  /// and changes of it along its @p direction, of any length, by 1/(1 + b).
+  /// Return the map for radial flow that divides the deviator of a trial stress
+  /// by 1 + a, and changes of it along @p direction (of any length) by 1 + b.
   inline ErrorRelaxation
   radial_relaxation(const double                 a,
                     const double                 b,
@@ -186,7 +186,8 @@ namespace Viscoplastic
 
   /// The positive definite tangent that linear solvers use in the place of C:
   /// definite_tangent() of algorithmic_tangent(); in closed form for radial
-  /// flow in isotropic bodies. If asked for, also its inverse.
+  /// flow in isotropic bodies. Also computes the inverse @p compliance, if
+  /// given.
   SymmetricTensor<4, 3>
   step_tangent(const ViscoplasticLaw       &law,
                const SymmetricTensor<2, 3> &stress,

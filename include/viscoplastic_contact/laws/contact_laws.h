@@ -8,11 +8,11 @@
 
 namespace Viscoplastic
 {
-  /// How a foundation that gives way presses at the penetration w > 0: by p =
-  /// k phi(w) with k >= 0, phi(0) = 0, and a slope phi' > 0 that does not fall.
+  /// The pressure of a deformable foundation at a penetration w > 0, which is p
+  /// = k phi(w) with k >= 0, phi(0) = 0, and a nondecreasing slope phi' > 0.
   struct PressureLaw
   {
-    /// p, dp/dw and int_0^w p for k and w; w for k and p.
+    /// p, dp/dw and int_0^w p as functions of (k, w); w as one of (k, p).
     std::function<double(double, double)> force, slope, energy, penetration;
   };
 
@@ -22,7 +22,7 @@ namespace Viscoplastic
   power_pressure(double exponent);
 
 
-  /// What has a name in a list; null if nothing has it.
+  /// Return the element with this name, or null if there is none.
   template <typename Named>
   const Named *
   find_named(const std::vector<Named> &list, const std::string &name)
@@ -34,12 +34,12 @@ namespace Viscoplastic
   }
 
 
-  /// An entry of a law in the section of a boundary: an expression that must
-  /// not be negative, or, if it has a default, a number.
+  /// An entry of a law in the section of a boundary: a nonnegative expression
+  /// or, if it has a default value, a number not below `least`.
   struct LawEntry
   {
     std::string name, help;
-    /// Whether what it adds to a friction bound is multiplied by the pressure.
+    /// Whether its term in the friction bound is multiplied by the pressure.
     bool        of_pressure   = false;
     std::string default_value = {};
     double      least         = 0.;
@@ -51,10 +51,10 @@ namespace Viscoplastic
     }
   };
 
-  /// What contact laws and friction laws have.
+  /// The common part of contact laws and friction laws.
   struct LawOfBoundary
   {
-    /// As in parameter files; what it means; what a run calls it.
+    /// The name in parameter files, its meaning, and the name in output.
     std::string           name, help, words;
     std::vector<LawEntry> entries = {};
 
@@ -65,24 +65,23 @@ namespace Viscoplastic
     }
   };
 
-  /// What acts along the normal of a boundary in contact. Where the foundation
-  /// gives way, entries are k(x) and the numbers of which make() makes the
-  /// pressure.
+  /// A contact condition in normal direction. For a deformable foundation, the
+  /// entries are k(x) and the numbers from which make() makes the pressure law.
   struct ContactLaw : LawOfBoundary
   {
     enum class Kind
     {
       bilateral,    // u_nu = d
       given_stress, // sigma_nu = S
-      unilateral    // u_n <= g + d, or p(u_n - g - d) where it gives way
+      unilateral    // u_n <= g + d, or p(u_n - g - d) if deformable
     };
     Kind                                                    kind;
     std::function<PressureLaw(const std::vector<double> &)> make = {};
   };
 
-  /// What acts along the face: friction with the bound rho, the sum of the
-  /// entries, functions of x and t, those times the pressure that are
-  /// `of_pressure'. No friction without entries.
+  /// A friction law with the bound rho(x,t), the sum of its entries, of which
+  /// those with `of_pressure` are multiplied by the pressure. Without entries
+  /// there is no friction.
   struct FrictionLaw : LawOfBoundary
   {
     /// No slip whatever the force: rho = infinity.
@@ -97,14 +96,14 @@ namespace Viscoplastic
     }
   };
 
-  /// All of them, in the order of their names in parameter files.
+  /// All laws, in the order in which parameter files list their names.
   const std::vector<ContactLaw> &
   contact_laws();
 
   const std::vector<FrictionLaw> &
   friction_laws();
 
-  /// "not given", and the names of laws, with bars between.
+  /// Return "not given" and the names of the laws, separated by bars.
   template <typename Law>
   std::string
   names_of(const std::vector<Law> &laws)
@@ -115,7 +114,8 @@ namespace Viscoplastic
     return names;
   }
 
-  /// The entries of laws; those that share some have them in the same order.
+  /// Return the entries of all laws without repetitions. Laws that share
+  /// entries must have them in the same order.
   template <typename Law>
   std::vector<LawEntry>
   entries_of(const std::vector<Law> &laws)

@@ -34,8 +34,8 @@ namespace Viscoplastic
   load_laws(const std::string &file);
 
   /// The laws of the program and of these libraries, in this order. Throws
-  /// ExcMessage also if a law has no name that an entry could have, or that of
-  /// another law.
+  /// ExcMessage as load_laws() does, or if the name of a law is invalid or that
+  /// of another law.
   std::vector<LawDescription>
   laws_with_libraries(const std::vector<std::string> &files);
 } // namespace Viscoplastic

@@ -5,13 +5,13 @@
 
 namespace Viscoplastic
 {
-  /// An entry of a law with its default and what the manual says of it.
+  /// An entry of a law: name, default value, and text of the manual.
   struct DeclaredEntry
   {
     const char *name, *value, *help;
   };
 
-  /// For LawDescription::declare: expressions with these names.
+  /// Return a function for LawDescription::declare that declares entries.
   inline std::function<void(ParameterHandler &)>
   declare_entries(const std::vector<DeclaredEntry> &entries)
   {
@@ -21,7 +21,7 @@ namespace Viscoplastic
     };
   }
 
-  /// For LawDescription::make.
+  /// A function for LawDescription::make.
   template <typename Law>
   std::unique_ptr<ViscoplasticLaw>
   make_law(const LawSection &section)
@@ -30,7 +30,7 @@ namespace Viscoplastic
   }
 
 
-  /// The base of a law that is written point by point,
+  /// The base class (CRTP) of a law that is written point by point,
   ///
   ///     class Perzyna final : public PointwiseLaw<Perzyna>
   template <typename Law>
@@ -48,13 +48,12 @@ namespace Viscoplastic
 
 
 
-  /// The base of a law of flow along the deviator,
+  /// The base class (CRTP) of a law of flow along the deviator,
   ///
   ///     G = -E (strain rate),   strain rate = 3/2 f dev(sigma)/sigma_eq,
   ///
   /// whose equivalent strain rate f depends on the von Mises stress sigma_eq
-  /// and the point alone and is convex in sigma_eq. All that a law has to say
-  /// is
+  /// and the point alone and is convex in sigma_eq. A law has to define only
   ///
   ///     FlowSlopes slopes(const double sigma_eq, const LawPoint &point) const;
   ///
@@ -99,7 +98,7 @@ namespace Viscoplastic
       return law().slopes(sigma_eq, point);
     }
 
-    /// The relaxation rate from the tangent, the larger slope.
+    /// The relaxation rate from the tangent, which is at least the secant.
     double
     relaxation_rate(const SymmetricTensor<2, 3> &stress,
                     const SymmetricTensor<2, 3> & /*strain*/,

@@ -34,8 +34,8 @@ namespace Viscoplastic
   /// plane-strain computation passes eps_zz = eps_xz = eps_yz = 0 and keeps
   /// sigma_zz, so everything that works on stresses is written once.
   ///
-  /// An isotropic tensor is two moduli. Copies share the data of a general one.
-  /// What is called for each cell at each step is inline.
+  /// An isotropic tensor is stored as two moduli; copies of an anisotropic one
+  /// share its data. Functions called for each cell in each step are inline.
   class Stiffness
   {
   public:
@@ -69,7 +69,7 @@ namespace Viscoplastic
     complementary_product(const SymmetricTensor<2, 3> &a,
                           const SymmetricTensor<2, 3> &b) const;
 
-    /// The sum of weights times this at @p n points.
+    /// Return the sum of weights[i] (E^-1 a[i] : b[i]) over @p n points.
     double
     complementary_product(const unsigned int           n,
                           const double                *weights,
@@ -83,18 +83,18 @@ namespace Viscoplastic
       return complementary_product(stress, stress);
     }
 
-    /// The shear modulus mu, in the unit of stress; of an anisotropic tensor
-    /// Voigt's average.
+    /// The shear modulus mu, in the unit of stress; Voigt's average if
+    /// anisotropic.
     double
     shear_modulus() const;
 
-    /// K = lambda + 2 mu/3, unit of stress; or Voigt's average.
+    /// The bulk modulus K = lambda + 2 mu/3, or Voigt's average.
     double
     bulk_modulus() const;
 
     /// The largest eigenvalue of P E P, where P takes the deviator; 2 mu if
-    /// isotropic.
-    /// It turns the viscosity of a deviatoric flow into its relaxation rate.
+    /// isotropic. It relates the viscosity of deviatoric flow to its relaxation
+    /// rate.
     double
     largest_deviatoric_eigenvalue() const;
 
@@ -104,7 +104,7 @@ namespace Viscoplastic
     double
     smallest_deviatoric_eigenvalue() const;
 
-    /// (3 K - 2 mu)/(6 K + 2 mu).
+    /// Poisson's ratio (3 K - 2 mu)/(6 K + 2 mu).
     double
     poissons_ratio() const;
 
@@ -130,7 +130,7 @@ namespace Viscoplastic
 
     Stiffness(const double shear_modulus, const double bulk_modulus);
 
-    // Not inline, which leaves the isotropic case short enough to be so.
+    // Not inline, so that the isotropic case is short enough for inlining.
     SymmetricTensor<2, 3>
     anisotropic_stress(const SymmetricTensor<2, 3> &strain) const;
     SymmetricTensor<2, 3>

@@ -23,9 +23,9 @@ namespace Viscoplastic
       return {{{0, 0}, {1, 1}, {2, 2}, {0, 1}, {0, 2}, {1, 2}}};
   }
 
-  /// The symmetric part of a displacement gradient as a 3D tensor; in a plane,
-  /// zz is @p zz, u_r/r in bodies of revolution, and the rest of what has z is
-  /// zero.
+  /// Return the symmetric part of a displacement gradient as a 3D tensor. In
+  /// 2D, its component zz is @p zz, u_r/r for bodies of revolution, and xz and
+  /// yz are zero.
   template <int dim>
   DEAL_II_ALWAYS_INLINE inline SymmetricTensor<2, 3>
   strain(const Tensor<2, dim> &gradient, const double zz = 0.)
@@ -53,8 +53,8 @@ namespace Viscoplastic
     return sum / volume;
   }
 
-  /// The strain whose trace is @p dilatation in the place of its own: under
-  /// mean dilatation, with the mean over the cell, what stresses act on.
+  /// Return a strain with its trace replaced by @p dilatation. With mean
+  /// dilatation, stresses follow from strains with the mean over the cell.
   inline SymmetricTensor<2, 3>
   with_dilatation(SymmetricTensor<2, 3> strain, const double dilatation)
   {

@@ -57,8 +57,8 @@ namespace Viscoplastic
                  const std::string &entry,
                  const Range        range);
 
-    /// Throws ExcMessage naming entry, value, range, place and time if out of
-    /// range.
+    /// Return the value. Throws ExcMessage naming entry, value, range, place
+    /// and time if it is out of range.
     double
     value(const Point<3> &x,
           const double    t,
@@ -107,15 +107,15 @@ namespace Viscoplastic
   /// The parameters of a law at a point.
   using LawParameters = std::array<double, 8>;
 
-  /// The history variables of a law at a point, which are the independent
-  /// components of a symmetric tensor if it has six. They start from zero.
+  /// History variables of a law at a point are stored as the independent
+  /// components of a symmetric tensor. These are zero, the initial values.
   inline const SymmetricTensor<2, 3> no_history;
 
-  /// Where and when a law is evaluated (in 2D, z = 0), and what the
-  /// parameters of the law are there, in the order of its constructor; behind
-  /// them there may be what the law derives from them, see
-  /// ViscoplasticLaw::prepare(). The temperature is that of the scene, 0 where
-  /// there is none. The history variables stay where they are stored.
+  /// The place (z = 0 in 2D) and time at which a law is evaluated, and the
+  /// values of its parameters there, in the order of its constructor. Behind
+  /// these there may be derived values, see ViscoplasticLaw::prepare(). The
+  /// temperature is 0 in scenes without temperature. `history` points to
+  /// history variables that the LawPoint does not own.
   struct LawPoint
   {
     Point<3>                     x;
@@ -136,8 +136,8 @@ namespace Viscoplastic
 
 
 
-  /// G at a state, and what a step asks for beside it: r, and whether the
-  /// stress is beyond the cap of the law.
+  /// G at a state, the relaxation rate r, and whether the stress is beyond the
+  /// cap of the law.
   struct Flow
   {
     SymmetricTensor<2, 3> rate;
@@ -157,10 +157,10 @@ namespace Viscoplastic
   ///
   ///     alpha' = H(t, sigma, eps(u), alpha),
   ///
-  /// on which G may depend. A law knows
-  /// no mesh and has no state: all its functions are const and depend on their
-  /// arguments only, so cells can be visited in any order and by several
-  /// threads. G must be Lipschitz in stress and strain, (2.8).
+  /// on which G may depend. A law knows no mesh and has no state: all its
+  /// functions are const and depend on their arguments only, so cells can be
+  /// visited in any order and by several threads. G must be Lipschitz in stress
+  /// and strain, (2.8).
   ///
   /// A new law is one file: in a shared library that the parameter file names,
   /// or in source/laws with one line in the list of
@@ -170,7 +170,7 @@ namespace Viscoplastic
   public:
     virtual ~ViscoplasticLaw() = default;
 
-    /// The point with the values of the parameters there. Evaluates
+    /// Return the point with the values of the parameters there. This evaluates
     /// expressions: keep the result where they do not change.
     virtual LawPoint
     point(const Point<3> &x,
@@ -200,18 +200,17 @@ namespace Viscoplastic
       return false;
     }
 
-    /// Whether a point must be evaluated anew at each time.
+    /// Whether point() has to be called again at each time.
     virtual bool
     depends_on_time() const;
 
-    /// Whether the law goes with this elastic tensor; throws ExcMessage if not,
-    /// e.g. for a long-term modulus beyond the elastic one.
+    /// Throw ExcMessage if the law is incompatible with this elastic tensor,
+    /// e.g. if a long-term modulus is beyond the elastic one.
     virtual void
     check(const Stiffness & /*stiffness*/, const LawPoint & /*point*/) const
     {}
 
-    /// G, stress per time. The strain is the mechanical one, without that of
-    /// the temperature.
+    /// Return G, stress per time. The strain excludes thermal strain.
     virtual SymmetricTensor<2, 3>
     rate(const SymmetricTensor<2, 3> &stress,
          const SymmetricTensor<2, 3> &strain,
@@ -235,11 +234,11 @@ namespace Viscoplastic
              const Stiffness             &stiffness,
              const LawPoint              &point) const = 0;
 
-    /// The number of history variables: the first ones of point.history, zero
-    /// when the material begins to exist.
+    /// The number of history variables: the first components of point.history.
+    /// They are zero when the material begins to exist.
     const unsigned int n_history_variables;
 
-    /// H = d alpha/dt, per time, in the components of the history variables.
+    /// Return H = d alpha/dt in the components of the history variables.
     virtual SymmetricTensor<2, 3>
     history_rate(const SymmetricTensor<2, 3> &stress,
                  const SymmetricTensor<2, 3> &strain,
@@ -251,8 +250,8 @@ namespace Viscoplastic
     ///
     ///     alpha = point.history + k H(t, sigma, eps, alpha).
     ///
-    /// By Newton's method with differences, unless a law knows better. Throws
-    /// ExcMessage if it finds none.
+    /// The default is Newton's method with finite differences. Throws
+    /// ExcMessage if there is no convergence.
     virtual SymmetricTensor<2, 3>
     history_after_step(const SymmetricTensor<2, 3> &stress,
                        const SymmetricTensor<2, 3> &strain,
@@ -260,8 +259,8 @@ namespace Viscoplastic
                        const Stiffness             &stiffness,
                        const LawPoint              &point) const;
 
-    /// G with the history variables after a step of backward Euler to this
-    /// stress from those of the point: a function of stress and strain alone.
+    /// Return G with the history variables after a step of backward Euler from
+    /// those of the point to this stress and strain.
     SymmetricTensor<2, 3>
     step_rate(const SymmetricTensor<2, 3> &stress,
               const SymmetricTensor<2, 3> &strain,
@@ -278,8 +277,8 @@ namespace Viscoplastic
       return rate(stress, strain, stiffness, after);
     }
 
-    /// The derivatives of step_rate(): of a law with history variables by
-    /// differences, unless it knows better.
+    /// The derivatives of step_rate(); by default tangents(), or central
+    /// differences for a law with history variables.
     virtual Tangents
     step_tangents(const SymmetricTensor<2, 3> &stress,
                   const SymmetricTensor<2, 3> &strain,
@@ -312,9 +311,9 @@ namespace Viscoplastic
       double secant, tangent;
     };
 
-    /// The slopes, where f depends on the von Mises stress sigma_eq and the
-    /// point alone and is convex: backward Euler is then one equation for
-    /// sigma_eq (radial return). None for other flow.
+    /// Return the slopes if f is convex and depends only on the von Mises
+    /// stress sigma_eq and the point: backward Euler is then one equation for
+    /// sigma_eq (radial return). Returns nothing for other flow.
     virtual std::optional<FlowSlopes>
     radial_flow(const double /*sigma_eq*/, const LawPoint & /*point*/) const
     {
@@ -322,10 +321,10 @@ namespace Viscoplastic
     }
 
     /// The rate r >= 0, 1/time, at which stress relaxes at fixed strain: at
-    /// least the largest eigenvalue of -dG/dsigma at this stress, of a law with
-    /// history variables that of -d(G, H)/d(sigma, alpha). Forward Euler
-    /// is stable for time steps up to 2/r. A law whose rate may jump to a
-    /// larger value within one step returns the larger one.
+    /// least the largest eigenvalue of -dG/dsigma at this stress, or of -d(G,
+    /// H)/d(sigma, alpha) with history variables. Forward Euler is stable for
+    /// time steps up to 2/r. A law whose rate may jump to a larger value within
+    /// one step returns the larger one.
     virtual double
     relaxation_rate(const SymmetricTensor<2, 3> &stress,
                     const SymmetricTensor<2, 3> &strain,
@@ -338,9 +337,9 @@ namespace Viscoplastic
     virtual bool
     deviatoric_flow() const = 0;
 
-    /// A: the flow dissipates the power -G : A, unit of strain. E^-1 sigma
-    /// unless part of the energy is stored elsewhere. Not used of laws with
-    /// history variables, which dissipate what they do not store.
+    /// Return the strain A such that the flow dissipates the power -G : A. It
+    /// is E^-1 sigma unless part of the energy is stored elsewhere. Not used
+    /// for laws with history variables, which dissipate what they do not store.
     virtual SymmetricTensor<2, 3>
     driving_strain(const SymmetricTensor<2, 3> &stress,
                    const SymmetricTensor<2, 3> &strain,
@@ -377,9 +376,9 @@ namespace Viscoplastic
       return false;
     }
 
-    /// G at all points of a cell, what rate(), relaxation_rate() and
-    /// is_beyond_cap() give at each. Steps call this once a cell; PointwiseLaw
-    /// and RadialLaw do it without a virtual call a point.
+    /// Evaluate rate(), relaxation_rate() and is_beyond_cap() at all points of
+    /// a cell. A step calls this once per cell; PointwiseLaw and RadialLaw
+    /// implement it without virtual calls at each point.
     virtual void
     flow(const LawStates &states, Flow *result) const;
 
@@ -392,7 +391,7 @@ namespace Viscoplastic
     }
 
   protected:
-    /// Add to a point what is worth computing once from its parameters.
+    /// Store values derived from the parameters behind these in the point.
     virtual void
     prepare(LawPoint & /*point*/) const
     {}
@@ -455,8 +454,8 @@ namespace Viscoplastic
     std::function<std::unique_ptr<ViscoplasticLaw>(const LawSection &)> make;
   };
 
-  /// The laws that the program has by itself. What follows takes others as
-  /// well, from shared libraries.
+  /// The laws of the program. The functions below also accept lists with laws
+  /// of shared libraries.
   const std::vector<LawDescription> &
   built_in_laws();
 

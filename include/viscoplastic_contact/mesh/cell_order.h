@@ -5,18 +5,17 @@
 
 namespace Viscoplastic
 {
-  /// The active cells of a mesh, a Triangulation or a DoFHandler, that this
-  /// rank owns: one coarse cell after the other, and the children of a cell one
-  /// after the other.
+  /// Return the active cells of a mesh (Triangulation or DoFHandler) that this
+  /// rank owns: by coarse cells, with the descendants of a cell in succession.
   ///
-  /// This order is a function of the mesh alone. The one of
-  /// active_cell_iterators() depends on how the mesh came about; with it sums
-  /// would be rounded otherwise in a run that goes on from a checkpoint.
+  /// This order depends on the mesh alone. The order of active_cell_iterators()
+  /// depends on the history of refinement: with it, sums would be rounded
+  /// differently in a run that is restarted from a checkpoint.
   template <class Mesh>
   std::vector<typename Mesh::active_cell_iterator>
   owned_cells(const Mesh &mesh);
 
-  /// The ghost cells, in the same order.
+  /// Return the ghost cells, in the same order.
   template <class Mesh>
   std::vector<typename Mesh::active_cell_iterator>
   ghost_cells(const Mesh &mesh);

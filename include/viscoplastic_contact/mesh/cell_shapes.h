@@ -12,8 +12,8 @@
 
 namespace Viscoplastic
 {
-  /// Numbers for the shapes of cells: the same for cells that differ by a
-  /// translation, on sections of rings by one along the axis.
+  /// Numbers the shapes of cells. Cells have the same shape if they differ by a
+  /// translation, for bodies of revolution by a translation along the axis.
   template <int dim>
   class CellShapes
   {
@@ -22,7 +22,7 @@ namespace Viscoplastic
       : is_of_ring(model == PlaneModel::axisymmetric)
     {}
 
-    /// The number of a cell's shape, and whether it is new.
+    /// Return the number of the shape of a cell, and whether it is new.
     std::pair<unsigned int, bool>
     add(const typename DoFHandler<dim>::active_cell_iterator &cell);
 

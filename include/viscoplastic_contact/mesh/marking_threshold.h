@@ -18,16 +18,15 @@ namespace Viscoplastic
 
   /// Choose a threshold among positive values that are spread over ranks.
   ///
-  /// The critical value is the one at which the weights of the values that are
-  /// not smaller add up to at least @p target. A threshold right beside it
-  /// would be passed by rounding and by what iterations leave, and so would the
-  /// choice between values that are equal by symmetry: runs on different
-  /// numbers of ranks would go on with different meshes. Therefore the
-  /// threshold is the middle of the widest gap between values within one per
-  /// cent below, or above, the critical one.
+  /// The critical value is the largest one such that the weights of all values
+  /// not below it add up to @p target or more. Rounding errors and errors of
+  /// iterative solvers could move values past a threshold close to it, and
+  /// separate values that are equal by symmetry: meshes would depend on the
+  /// number of ranks. Therefore the threshold is the middle of the widest gap
+  /// between values within one percent below, or above, the critical value.
   ///
   /// @p values are pairs of value and weight. Returns 0 if all weights add up
-  /// to less than the target. Collective, the same on all ranks.
+  /// to less than the target. Collective; the result is the same on all ranks.
   double
   marking_threshold(std::vector<std::pair<double, double>> values,
                     const double                           target,

@@ -7,9 +7,9 @@
 
 namespace Viscoplastic
 {
-  /// Make the initial mesh of a scene: from a generator or a file, with ids
-  /// from expressions, moved, checked and refined. Throws ExcMessage with a
-  /// sentence for the user. Collective.
+  /// Make the initial mesh of a scene: generate or read it, set ids, move,
+  /// check and refine it. Collective. Throws ExcMessage with a sentence for the
+  /// user.
   template <int dim>
   void
   make_mesh(const GeometryParameters                  &geometry,

@@ -7,9 +7,9 @@ namespace Viscoplastic
 {
   using namespace dealii;
 
-  /// Check that no cell is inverted or degenerate, and that lengths can be
-  /// computed with. Collective. Throws ExcMessage with a
-  /// sentence for the user if not.
+  /// Check that no cell is inverted or degenerate, and that lengths are in the
+  /// permitted range. Throws ExcMessage with a sentence for the user.
+  /// Collective.
   template <int dim>
   void
   check_mesh(const parallel::distributed::Triangulation<dim> &triangulation);

@@ -12,8 +12,8 @@ namespace Viscoplastic
 {
   using namespace dealii;
 
-  /// Give the coarse mesh the ids of the expressions `Geometry/Boundary ids'
-  /// and `Geometry/Material ids', if there are any. Throws ExcMessage with a
+  /// Set the ids of the coarse mesh from the expressions `Geometry/Boundary
+  /// ids' and `Geometry/Material ids', if given. Throws ExcMessage with a
   /// sentence for the user.
   template <int dim>
   void
@@ -25,14 +25,13 @@ namespace Viscoplastic
   std::set<types::boundary_id>
   boundary_ids(const parallel::distributed::Triangulation<dim> &triangulation);
 
-  /// The ids of the boundaries at each vertex of the coarse mesh, by the index
-  /// of the vertex.
+  /// Return the boundary ids at each coarse vertex, by the index of the vertex.
   template <int dim>
   std::map<unsigned int, std::set<types::boundary_id>>
   boundaries_at_vertices(const Triangulation<dim> &triangulation);
 
-  /// The pairs of ids of boundaries, either first, that have a vertex of the
-  /// coarse mesh in common.
+  /// Return the pairs of boundary ids, in both orders, that share a vertex of
+  /// the coarse mesh; each id is also paired with itself.
   template <int dim>
   std::set<std::pair<types::boundary_id, types::boundary_id>>
   touching_boundaries(const Triangulation<dim> &triangulation);
@@ -44,8 +43,7 @@ namespace Viscoplastic
 
 
 
-  /// The mean outward normal of the boundary faces with one id, which tells
-  /// how far they are from a plane.
+  /// The mean outward normal of faces with one id, and their deviation from it.
   template <int dim>
   struct PieceNormal
   {
@@ -56,23 +54,23 @@ namespace Viscoplastic
     double deviation;
   };
 
-  /// Return the mean normal of the boundary faces with this @p id, each
-  /// weighted by its area. Where normals cancel, as all around a body, it is
-  /// zero and the deviation 180. Collective.
+  /// Return the area-weighted mean normal of the boundary faces with this @p
+  /// id. If the normals cancel, as all around a body, the mean is zero and the
+  /// deviation 180. Collective.
   template <int dim>
   PieceNormal<dim>
   piece_normal(const parallel::distributed::Triangulation<dim> &triangulation,
                const types::boundary_id                         id);
 
-  /// The largest angle between the normals of faces with this @p id that share
-  /// a vertex, in degrees. Collective.
+  /// Return the largest angle in degrees between the normals of faces with this
+  /// @p id that share a vertex. Collective.
   template <int dim>
   double
   largest_angle(const parallel::distributed::Triangulation<dim> &triangulation,
                 const types::boundary_id                         id);
 
-  /// Whether any face with this @p id looks, by its outward normal, into a @p
-  /// direction. Collective.
+  /// Return whether the outward normal of any face with this @p id has a
+  /// positive component in @p direction. Collective.
   template <int dim>
   bool
   faces_towards(const parallel::distributed::Triangulation<dim> &triangulation,

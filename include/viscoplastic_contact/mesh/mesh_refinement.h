@@ -15,25 +15,24 @@ namespace Viscoplastic
   refine_mesh(const GeometryParameters                  &geometry,
               parallel::distributed::Triangulation<dim> &triangulation);
 
-  /// The rank that owns the active cell at a vertex of a cell, which may be
-  /// refined and need not be known here.
+  /// Return the rank that owns the active cell at a vertex of a cell, which may
+  /// be refined and need not be known to this rank.
   template <int dim>
   unsigned int
   rank_at_vertex(const parallel::distributed::Triangulation<dim> &triangulation,
                  const CellId                                    &cell,
                  const unsigned int                               vertex);
 
-  /// Make a mesh that of another one with the same coarse cells. Collective.
+  /// Refine a mesh to that of @p model with the same coarse cells. Collective.
   template <int dim>
   void
   refine_like(const parallel::distributed::Triangulation<dim> &model,
               parallel::distributed::Triangulation<dim>       &triangulation);
 
-  /// prepare_coarsening_and_refinement() for the whole mesh: the flags that a
-  /// balanced mesh asks for, whatever part each rank has. deal.II's own looks
-  /// at the flags of owned cells alone: beside the cells of another rank a
-  /// family stays that could go with them, and cells are refined unasked.
-  /// Collective.
+  /// Do what prepare_coarsening_and_refinement() does, but for the whole mesh,
+  /// so that the flags do not depend on the partition. That function only sees
+  /// the flags of owned cells: beside cells of other ranks, it keeps families
+  /// that could be coarsened and refines cells needlessly. Collective.
   template <int dim>
   void
   prepare_mesh_change(parallel::distributed::Triangulation<dim> &triangulation);

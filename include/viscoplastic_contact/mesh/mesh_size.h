@@ -10,12 +10,12 @@
 namespace Viscoplastic
 {
   /// Check that a mesh of @p n_cells cells in @p dim dimensions, refined from
-  /// @p n_coarse_cells, is possible: its unknowns have to be numbered by 32
-  /// bits, those of a rank's matrix entries, too, and the mesh has to fit the
-  /// memory of the computers, the coarse cells once a rank. To be
-  /// called before memory is taken, which would not end with an error but with
-  /// all other programs of the computer. Collective. Throws ExcMessage with a
-  /// sentence that begins with @p cause, e.g. an entry and its value.
+  /// @p n_coarse_cells, is possible: unknowns and the matrix entries of a rank
+  /// have to be numbered by 32 bits, and the mesh has to fit into memory, with
+  /// all coarse cells on each rank. To be called before memory is allocated,
+  /// since running out of it may end other programs without an error here.
+  /// Throws ExcMessage with a sentence that begins with @p cause, e.g. an entry
+  /// and its value. Collective.
   void
   check_mesh_size(const unsigned int dim,
                   const double       n_cells,
@@ -23,12 +23,12 @@ namespace Viscoplastic
                   const std::string &cause,
                   const MPI_Comm     communicator);
 
-  /// The bytes that all coarse cells take on each of several ranks.
+  /// Return the bytes that all coarse cells take on each rank of several.
   double
   bytes_of_coarse_cells(const unsigned int dim, const double n_coarse_cells);
 
 
-  /// The diagonal of the bounding box of the vertices of the coarse mesh.
+  /// Return the diagonal of the bounding box of the coarse vertices.
   template <int dim>
   double
   body_diagonal(const dealii::Triangulation<dim> &triangulation);

@@ -10,23 +10,23 @@
 #include <algorithm>
 #include <cmath>
 
-// What a plane mesh stands for. All that axial symmetry changes in integrals is
-// here: the measure 2 pi r, which comes with the mapping, and the hoop strain
-// u_r/r. Coordinates are (x, y) = (r, z); the third direction of tensors, z in
-// their names, is that around the axis.
+// The body that a plane mesh represents. Axial symmetry changes integrals only
+// by the measure 2 pi r, which the mapping includes, and by the hoop strain
+// u_r/r; both are here. Coordinates are (x, y) = (r, z); the third direction of
+// tensors, called z in their components, is circumferential.
 
 namespace Viscoplastic
 {
-  /// The (bi-, tri-)linear mapping, with weights JxW that include 2 pi r for
-  /// bodies of revolution.
+  /// Return the (bi-, tri-)linear mapping; for bodies of revolution, its
+  /// weights JxW include 2 pi r.
   template <int dim>
   const Mapping<dim> &
   mapping_of(const PlaneModel model);
 
 
 
-  /// The extent of the body across its section at @p x: 2 pi r for a body of
-  /// revolution, otherwise 1.
+  /// Return the extent of the body across its section at @p x: 2 pi r for a
+  /// body of revolution, otherwise 1.
   template <int dim>
   double
   extent(const PlaneModel model, const Point<dim> &x)
@@ -36,8 +36,7 @@ namespace Viscoplastic
 
 
 
-  /// Whether a face lies on the axis x = 0, but for what coordinates in mesh
-  /// files may miss.
+  /// Return whether a face is on the axis x = 0, up to errors in mesh files.
   template <typename Face>
   bool
   is_on_axis(const Face &face)
@@ -50,8 +49,8 @@ namespace Viscoplastic
 
 
 
-  /// The hoop strain u_r/r of shape function @p i of V_h at a quadrature point
-  /// of a ring; on the axis, where u_r is zero, it is the radial strain.
+  /// Return the hoop strain u_r/r of shape function @p i of V_h at a quadrature
+  /// point of a body of revolution; on the axis it is the radial strain.
   template <int dim>
   double
   hoop_strain(const FEValuesBase<dim> &values,
@@ -66,8 +65,8 @@ namespace Viscoplastic
 
 
 
-  /// The strain of a displacement with this value and gradient at @p x, and of
-  /// a section whose strain zz is @p axial.
+  /// Return the strain of a displacement with this value and gradient at @p x;
+  /// its component zz is @p axial unless the model is axisymmetric.
   template <int dim>
   SymmetricTensor<2, 3>
   strain(const Tensor<1, dim> &displacement,

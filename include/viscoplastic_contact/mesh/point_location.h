@@ -19,11 +19,10 @@ namespace Viscoplastic
     static constexpr std::size_t elsewhere =
       std::numeric_limits<std::size_t>::max();
 
-    /// The cell by its number in owned_cells(); elsewhere on all ranks but the
-    /// one that owns it.
+    /// The cell by its number in owned_cells(); `elsewhere' on all other ranks.
     std::size_t cell = elsewhere;
     Point<dim>  unit;
-    /// The face of the cell that it has been looked for on, if any.
+    /// The face of the cell on which the point has been searched for, if any.
     unsigned int face = numbers::invalid_unsigned_int;
 
     bool
@@ -35,7 +34,7 @@ namespace Viscoplastic
 
 
   /// The cells and reference coordinates of points on a mesh and, on all ranks,
-  /// the points outside of it.
+  /// the distances of points outside of it.
   template <int dim>
   struct PointLocations
   {
@@ -45,23 +44,24 @@ namespace Viscoplastic
   };
 
 
-  /// Whether to look into cells of a material; empty for all.
+  /// Whether cells of a material are preferred; an empty function prefers all.
   using MaterialFilter = std::function<bool(const types::material_id)>;
 
-  /// Find the cells of some points; of several cells that a point is on, the
-  /// one whose center has the least coordinates, x first, which does not depend
-  /// on the number of ranks. Cells of materials that are not @p is_preferred
-  /// count only where there is no other. For a point outside of the mesh it is
-  /// the place on its boundary that is nearest. Collective.
+  /// Find the cells of some points. Among several cells that contain a point,
+  /// the one whose center has the least coordinates (x first) is chosen,
+  /// independently of the number of ranks. Cells of materials that are not @p
+  /// is_preferred count only if there is no other. A point outside of the mesh
+  /// is replaced by the nearest place on the boundary. Collective.
   template <int dim>
   PointLocations<dim>
   locate_points(const Triangulation<dim>      &triangulation,
                 const std::vector<Point<dim>> &points,
                 const MaterialFilter          &is_preferred = {});
 
-  /// Find the faces of some boundaries that points are on; of several ones that
-  /// whose center has the least coordinates. Points that are on none are
-  /// elsewhere on all ranks, and have a positive distance. Collective.
+  /// Find the faces of some boundaries that contain points; among several
+  /// faces, the one whose center has the least coordinates. Points on none of
+  /// them are `elsewhere' on all ranks and have a positive distance.
+  /// Collective.
   template <int dim>
   PointLocations<dim>
   locate_on_boundary(const Triangulation<dim>           &triangulation,
@@ -69,8 +69,8 @@ namespace Viscoplastic
                      const std::set<types::boundary_id> &ids);
 
 
-  /// Throws ExcMessage that names @p entry and the nearest place unless all of
-  /// some points are in the mesh. Collective.
+  /// Throw ExcMessage that names @p entry and the nearest place in the mesh if
+  /// a point is outside of the mesh. Collective.
   template <int dim>
   void
   check_points(const Triangulation<dim>      &triangulation,

@@ -12,8 +12,8 @@ namespace Viscoplastic
 {
   using namespace dealii;
 
-  // Entries with a closed list of values. Each has an enumeration and
-  // choices(), the names of its values in their order as in parameter files.
+  // Entries with a fixed list of values. Each has an enumeration and a function
+  // choices() with the names of its values in parameter files, in order.
 
   /// The body that a plane mesh represents: a slice of a long body with zero or
   /// uniform strain along z, or the meridian section of a body of revolution.
@@ -43,8 +43,8 @@ namespace Viscoplastic
     return "automatic|full|mean dilatation";
   }
 
-  /// The discretization of the irreversible stress z: one value a cell, or one
-  /// a quadrature point.
+  /// The discretization of the irreversible stress z: one value per cell, or
+  /// one per quadrature point.
   enum class StressHistory
   {
     cell_means,
@@ -102,14 +102,14 @@ namespace Viscoplastic
     return "forward Euler|backward Euler|Heun|automatic";
   }
 
-  /// The order of a scheme in k.
+  /// Return the order of convergence of a scheme in the time step k.
   inline unsigned int
   order_of(const TimeScheme scheme)
   {
     return scheme == TimeScheme::heun ? 2 : 1;
   }
 
-  /// What becomes of explicit steps beyond their stability limit.
+  /// How explicit steps beyond their stability limit are handled.
   enum class StiffnessPolicy
   {
     refuse,
@@ -123,8 +123,8 @@ namespace Viscoplastic
     return "refuse|subdivide|backward Euler";
   }
 
-  /// Whether steps are divided until they resolve events of slip.
-  /// `automatic' is replaced when parameters are read.
+  /// Whether steps are divided until they resolve the beginning and end of
+  /// slip. `automatic' is replaced when parameters are read.
   enum class EventResolution
   {
     on,
@@ -138,8 +138,8 @@ namespace Viscoplastic
     return "true|false|automatic";
   }
 
-  /// The pressure of unilateral contact with which Coulomb's law bounds
-  /// friction.
+  /// How the contact pressure in the bound of Coulomb's law is obtained in
+  /// unilateral contact.
   enum class CoulombPressure
   {
     lagged,
@@ -184,8 +184,8 @@ namespace Viscoplastic
 
 
 
-  /// Fields that can be recorded at points, along lines and as integrals:
-  /// fields of the body first, those of its boundary from `slip' on.
+  /// Fields that can be recorded at points, along lines and as integrals.
+  /// Fields of the body come first, those of its boundary from `slip' on.
   enum class RecordedField
   {
     displacement,
@@ -230,8 +230,8 @@ namespace Viscoplastic
     return field >= RecordedField::slip;
   }
 
-  /// Whether the field is that of contact alone, of friction alone, and of
-  /// contact that opens and closes alone.
+  /// Return whether the field is defined only in contact, and below: only with
+  /// friction, and only in contact that opens and closes.
   inline bool
   is_of_contact(const RecordedField field)
   {
@@ -254,7 +254,7 @@ namespace Viscoplastic
 
 
 
-  /// The name of a value of an enumeration in parameter files.
+  /// Return the name of a value of an enumeration in parameter files.
   template <typename Choice>
   std::string
   name_of(const Choice choice)
@@ -265,7 +265,7 @@ namespace Viscoplastic
 
 
 
-  /// ParameterHandler::add_parameter() for an enumeration.
+  /// Do ParameterHandler::add_parameter() for an enumeration.
   template <typename Choice>
   void
   add_choice(ParameterHandler  &prm,
@@ -286,7 +286,7 @@ namespace Viscoplastic
 
 
 
-  /// An entry with any number of the values, or of those that are @p allowed,
+  /// Add an entry with any number of values, or of those in @p allowed,
   /// separated by commas.
   template <typename Choice>
   void

@@ -8,20 +8,21 @@
 
 namespace Viscoplastic
 {
-  /// What is wrong with the dimensions of an expression, or of a list of them,
-  /// whose numbers have units: that it adds a length to a stress, or that it is
-  /// no @p wanted. A part of a sentence, or empty.
+  /// Check the dimensions of an expression, or of a list of them, whose numbers
+  /// have units. Returns a part of a sentence if they are wrong, e.g. if a
+  /// length is added to a stress or the result has not the dimension @p wanted;
+  /// otherwise an empty string.
   ///
-  /// The coordinates are lengths and t is a time; of the function of a law,
-  /// sigma_eq and p are stresses. A number without unit may have any, since it
-  /// has that of the scene, so that `0.3*t' is whatever is wanted. What cannot
-  /// be read is left to the parser of expressions.
+  /// Coordinates are lengths and t is a time; in expressions of laws, sigma_eq
+  /// and p are stresses. A number without unit fits any dimension, since it is
+  /// in units of the scene: `0.3*t' has any dimension. Expressions that cannot
+  /// be read are left to their parser.
   std::string
   wrong_dimension(const std::string              &text,
                   const std::optional<Dimension> &wanted);
 
-  /// Behind the number that begins at @p begin of @p text; @p begin itself if
-  /// none begins there.
+  /// Return the position after the number that begins at @p begin of @p text;
+  /// @p begin itself if none begins there.
   std::size_t
   end_of_number(const std::string &text, const std::size_t begin);
 } // namespace Viscoplastic

@@ -6,17 +6,17 @@
 
 namespace Viscoplastic
 {
-  /// A parameter file with every entry: meaning, unit, default and allowed
-  /// values in comments, and `Boundary 0' and `Material 1' in the place of all
+  /// Return a parameter file with every entry: meaning, unit, default and
+  /// allowed values in comments, with `Boundary 0' and `Material 1' for all
   /// ids. It is itself a scene: that of @p files and @p overrides, as
-  /// Parameters reads them, or without files a square at rest.
+  /// Parameters reads them, or, without files, a square at rest.
   std::string
   describe_parameters(const std::vector<std::string> &files     = {},
                       const std::vector<std::string> &overrides = {});
 
-  /// All entries in JSON, without values: an `introduction', the descriptions
-  /// of `sections' by name, and the `entries', with those of laws in shared
-  /// libraries.
+  /// Return all entries in JSON, without values: an `introduction', the
+  /// descriptions of `sections' by name, and the `entries', including those of
+  /// laws in shared libraries.
   std::string
   describe_parameters_as_json(const std::vector<std::string> &files     = {},
                               const std::vector<std::string> &overrides = {});

@@ -16,42 +16,41 @@ namespace Viscoplastic
 {
   struct ParameterLine;
 
-  /// One or several parameter files, read and checked as far as that is
-  /// possible without a mesh. Expressions stay texts here: their number of
+  /// The parameters of a scene from one or several files, checked as far as is
+  /// possible without a mesh. Expressions are kept as texts: their number of
   /// components depends on the dimension, so Scene<dim> parses them. Numbers
-  /// that have a unit in the files are numbers in the units of the scene here.
+  /// with units are converted to the units of the scene.
   class Parameters
   {
   public:
     /// Read @p files, of which later ones override earlier ones, and then the
-    /// assignments `Section/Entry=value' of @p overrides. Subsections
-    /// `Boundary 0', `Material 1' and so on are declared for the ids that these
-    /// name. Without files everything has its default.
+    /// assignments `Section/Entry=value' of @p overrides. Subsections `Boundary
+    /// 0', `Material 1' and so on are declared for the ids that occur in them.
+    /// Without files, all entries have their defaults.
     ///
-    /// Throws ExcMessage with a sentence that says where something unknown or
-    /// wrong is, and what would be right.
+    /// Throws ExcMessage with a sentence that names the line of an unknown or
+    /// wrong entry, and what would be right.
     explicit Parameters(const std::vector<std::string> &files,
                         const std::vector<std::string> &overrides = {});
 
     explicit Parameters(const std::string &file);
 
-    /// The structs below are bound to entries of the handler.
+    /// The handler refers to the structs below.
     Parameters(const Parameters &) = delete;
     Parameters &
     operator=(const Parameters &) = delete;
 
-    /// The first of the files, which gives the scene its name.
+    /// The first of the files, after which the scene is named.
     const std::string file;
-    /// The shared libraries whose laws are known beside those of the program.
+    /// The shared libraries with additional laws.
     std::vector<std::string>    shared_libraries;
     std::vector<LawDescription> laws;
     unsigned int                dimension = 2;
     UnitParameters              unit_names;
-    /// The units in which all numbers are; not declared unless the scene does.
+    /// The units of all numbers; not declared unless the scene does so.
     Units              units;
     GeometryParameters geometry;
-    /// The material of all cells; without meaning where there are numbered
-    /// materials.
+    /// The material of all cells; unused if there are numbered materials.
     MaterialParameters                         material;
     StressParameters                           stress;
     std::map<unsigned int, MaterialParameters> materials;
@@ -74,28 +73,27 @@ namespace Viscoplastic
     std::map<std::string, std::string>
     values() const;
 
-    /// A parameter file with every entry, numbers with the units that they have
-    /// in the files: the record of a run.
+    /// Print a parameter file with every entry and the units of numbers in the
+    /// files: the record of a run.
     void
     print(std::ostream &out) const;
 
-    /// Everything that is declared, as declared_entries() returns it, with
-    /// values as they are in the files.
+    /// Return all entries like declared_entries(), but with values as in the
+    /// files.
     boost::property_tree::ptree
     entries_as_written() const;
 
-    /// The entries whose numbers have units in the files, by their paths, with
-    /// these numbers in the units of the scene.
+    /// Return the entries with units in the files by their paths, with values
+    /// converted to the units of the scene.
     std::map<std::string, std::string>
     entries_with_units() const;
 
-    /// A message in which values of entries are replaced by what the files have
-    /// for them, with their units.
+    /// Replace values of entries in a message by their text in the files.
     std::string
     quote_as_written(const std::string &sentence) const;
 
-    /// Where an entry, given by its path, has been set last, as messages name
-    /// it: file and line, or the assignment. Empty if it has its default.
+    /// Return where an entry, given by its path, was set last, for messages:
+    /// file and line, or the assignment. Empty if it has its default.
     std::string
     origin_of(const std::string &path) const
     {
@@ -103,11 +101,11 @@ namespace Viscoplastic
       return origin == origins.end() ? "" : origin->second;
     }
 
-    /// All entries again, from which laws read their parameters.
+    /// The handler of all entries, from which laws read their parameters.
     mutable ParameterHandler handler;
 
   private:
-    /// Load what must be there before entries can be declared.
+    /// Load the laws, which have to be known before entries are declared.
     void
     load_shared_libraries(const std::vector<ParameterLine> &lines);
 
@@ -118,12 +116,12 @@ namespace Viscoplastic
     void
     read(const std::vector<ParameterLine> &lines);
 
-    /// Numbered materials replace the one for all cells.
+    /// Throw if `Material' has entries that numbered materials replace.
     void
     check_material(const std::vector<ParameterLine> &lines) const;
 
-    /// Replace choices `automatic' by what they stand for. Throws ExcMessage if
-    /// entries contradict `Error control/Tolerance'.
+    /// Replace choices `automatic' by their meaning in this scene. Throws
+    /// ExcMessage if entries contradict `Error control/Tolerance'.
     void
     resolve_automatic_choices();
 
@@ -131,9 +129,9 @@ namespace Viscoplastic
     void
     locate_mesh_file(const std::vector<ParameterLine> &lines);
 
-    /// By path of the entry, where its value comes from; see origin_of().
+    /// Where values come from, by path of the entry; see origin_of().
     std::map<std::string, std::string> origins;
-    /// The values of the files that have units in them, by path.
+    /// The values in the files that contain units, by path of the entry.
     std::map<std::string, std::string> as_written;
   };
 } // namespace Viscoplastic

@@ -9,12 +9,12 @@ namespace Viscoplastic
   /// A statement of a parameter file or of the command line.
   struct ParameterLine
   {
-    /// The name of the file and the line, or the option and 0.
+    /// The name of the file and the line number, or the option and 0.
     std::string  source;
     unsigned int number;
     /// The text as ParameterHandler reads it, on one line and without comment.
     std::string text;
-    /// The subsections around it, each with a `/' behind it.
+    /// The enclosing subsections, each followed by `/'.
     std::string section;
     /// The name of the entry that the line sets or of the subsection that it
     /// opens, if any.
@@ -22,9 +22,9 @@ namespace Viscoplastic
     std::string value      = {};
     bool        is_opening = false;
 
-    /// The absolute path of a file that the line names: beside the file that
-    /// the line stands in, or in the working directory. Throws ExcMessage if it
-    /// is in neither.
+    /// Return the absolute path of a file that the line names, relative to the
+    /// directory of the parameter file or to the working directory. Throws
+    /// ExcMessage if it is in neither.
     std::string
     locate(const std::string &file) const;
 
@@ -37,16 +37,17 @@ namespace Viscoplastic
     }
   };
 
-  /// The last line that sets an entry, given by its path; null if none does.
+  /// Return the last line that sets an entry, given by its path; null if none
+  /// does.
   const ParameterLine *
   last_line(const std::vector<ParameterLine> &lines, const std::string &path);
 
-  /// What ParameterHandler is to read: the statements of some files, with those
-  /// that they include in their places, and then of the assignments
-  /// `Section/Entry=value' of the command line. Whether names and values are
-  /// right is left to ParameterHandler. Here is what it does not do: includes
-  /// are relative to the including file and close what they open, the same
-  /// entry twice in one file is an error, and `Boundary 03' is `Boundary 3'.
+  /// Return the statements for ParameterHandler: those of the files, with
+  /// included files in place, then the assignments `Section/Entry=value' of the
+  /// command line. ParameterHandler checks names and values. In addition,
+  /// includes are relative to the including file and must close the subsections
+  /// that they open, the same entry twice in one file is an error, and
+  /// `Boundary 03' becomes `Boundary 3'.
   ///
   /// Throws ExcMessage with file and line.
   std::vector<ParameterLine>

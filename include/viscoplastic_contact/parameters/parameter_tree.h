@@ -13,9 +13,9 @@ namespace Viscoplastic
 {
   using namespace dealii;
 
-  /// Everything that is declared, in the order of declaration: a node with a
-  /// leaf `value' is an entry, with the leaves `default_value', `documentation'
-  /// and `pattern_description'; others are subsections.
+  /// Return all declarations of a handler in their order: a node with a leaf
+  /// `value' is an entry, with the leaves `default_value', `documentation' and
+  /// `pattern_description'; other nodes are subsections.
   boost::property_tree::ptree
   declared_entries(const ParameterHandler &handler);
 
@@ -25,8 +25,8 @@ namespace Viscoplastic
   bool
   is_entry(const boost::property_tree::ptree &node);
 
-  /// Paths `Section/Entry' and values of the entries below a node of it, in the
-  /// order of declaration; @p path: that of the node, and a slash.
+  /// Return paths `Section/Entry' and values of all entries below a node in the
+  /// order of declaration; @p path is that of the node, with a slash.
   std::vector<std::pair<std::string, std::string>>
   values_of(const boost::property_tree::ptree &node,
             const std::string                 &path = "");

@@ -20,7 +20,7 @@ namespace Viscoplastic
   // One struct for each subsection of the parameter file: defaults, the help
   // text of every entry (in declare()), and the checks that need no mesh.
 
-  /// Names of units; all empty where a scene declares none.
+  /// Names of units; all are empty if the scene declares none.
   struct UnitParameters
   {
     std::string length, time, stress, force;
@@ -59,12 +59,11 @@ namespace Viscoplastic
     /// The coefficient alpha of thermal expansion, per kelvin; empty for a
     /// material that does not expand.
     std::string thermal_expansion;
-    /// The activation energy Q per mole, and the temperature at which the rate
-    /// of the law is that of its entries; empty where rates do not depend on
-    /// temperature.
+    /// The activation energy Q per mole, and the temperature at which the
+    /// parameters of the law hold; empty if rates do not depend on temperature.
     std::string activation_energy, law_temperature;
-    /// Times at which the material appears and vanishes; empty for the
-    /// beginning and the end.
+    /// Times at which the material is added and removed; empty for the
+    /// beginning and the end of the run.
     std::string added_at, removed_at;
 
     void
@@ -100,7 +99,7 @@ namespace Viscoplastic
 
   struct TemperatureParameters
   {
-    /// T(x,t); empty for a body whose temperature plays no role.
+    /// T(x,t); empty if the scene has no temperature.
     std::string value, reference, gas_constant;
 
     void
@@ -134,10 +133,10 @@ namespace Viscoplastic
     BoundaryRole role = BoundaryRole::not_given;
     std::string  displacement, traction, pressure;
     std::string  normal_stiffness, tangential_stiffness;
-    /// Null where they are not given.
+    /// Null if not given.
     const ContactLaw  *contact_law  = nullptr;
     const FrictionLaw *friction_law = nullptr;
-    /// The entries of contact laws and of friction laws.
+    /// The values of the entries of contact laws and friction laws, by name.
     std::map<std::string, std::string> of_laws;
     std::string                        against, gap, foundation_normal;
     std::string                        slip_rate_factor = "1";
@@ -150,7 +149,7 @@ namespace Viscoplastic
     void
     declare(ParameterHandler &prm);
 
-    /// The entries of the role contact.
+    /// Declare the entries of the role contact.
     void
     declare_contact(ParameterHandler &prm);
   };
@@ -165,10 +164,10 @@ namespace Viscoplastic
     declare(ParameterHandler &prm);
   };
 
-  /// The entries that control the size of time steps by their error.
+  /// The entries for adaptive time steps.
   struct StepControlParameters
   {
-    /// The error a step may make; 0 for the steps of the phases.
+    /// The tolerance for the error of a step; 0 for the steps of the phases.
     double          tolerance = 0.;
     std::string     landing_times;
     bool            land_on_kinks   = true;
@@ -189,14 +188,14 @@ namespace Viscoplastic
   struct SolverParameters
   {
     LinearSolver linear_solver = LinearSolver::automatic;
-    /// Relative; 0: coupled to the estimated discretization error.
+    /// Relative tolerance; 0 couples it to the estimated discretization error.
     double          contact_tolerance  = 0.;
     unsigned int    maximal_iterations = 200;
     CoulombPressure coulomb_pressure   = CoulombPressure::newton;
     double          coulomb_tolerance  = 1e-6;
     bool            reuse_unchanged    = true;
 
-    /// The contact tolerance where no error estimate sets one.
+    /// Return the contact tolerance for use without an error estimate.
     double
     strict_tolerance() const
     {
@@ -209,7 +208,7 @@ namespace Viscoplastic
 
   struct ErrorControlParameters
   {
-    /// The error that the run may have, relative to the solution; 0 where
+    /// The tolerance for the error of the run relative to the solution; 0 if
     /// meshes and steps are given.
     double tolerance = 0.;
     /// The column of statistics.csv whose error is controlled; empty for the
@@ -218,7 +217,7 @@ namespace Viscoplastic
     bool        error_estimator    = true;
     double      algebraic_fraction = 0.05;
 
-    /// Whether the run chooses meshes and steps to a tolerance.
+    /// Return whether meshes and steps are chosen to meet a tolerance.
     bool
     has_tolerance() const
     {
@@ -284,8 +283,7 @@ namespace Viscoplastic
     double       revolved_angle  = 0.;
     std::string  points, lines, integrals;
     bool         lines_every_step = false;
-    /// Fields at points and along lines, and those of outputs that are written
-    /// only if the scene asks for them.
+    /// Fields at points and along lines, and optional fields of other output.
     std::set<RecordedField> point_fields, line_fields, additional_fields;
 
     void

@@ -16,45 +16,44 @@ namespace Viscoplastic
   /// The dimensions that the numbers in an entry may have.
   struct EntryUnit
   {
-    /// The dimension that the value of the entry must have; nothing if it is
-    /// not known.
+    /// The dimension of the value of the entry; nothing if it is not known.
     std::optional<Dimension> dimension;
-    /// Seconds of the clock on the wall, whatever the units of the scene.
+    /// Whether the entry is a wall time in seconds, whatever the units of the
+    /// scene.
     bool is_wall_time = false;
-    /// The exponent of a power law that the dimension follows from, and its
-    /// entry.
+    /// The exponent of a power law on which the dimension depends, and the name
+    /// of its entry.
     std::optional<double> exponent          = {};
     std::string           entry_of_exponent = "Exponent";
   };
 
-  /// The unit of an entry as its description says it, behind `Unit: ':
-  /// "length", "time", "stress", "1" for pure numbers and a few others, see
-  /// source/parameters/quantities.cc; of others the dimension is not known.
-  /// @p exponent is that of the power of an entry in "1/(stress^n time)" or
-  /// "stress/length^m".
-  /// Nothing for descriptions without those words: the text is no number.
+  /// Return the unit of an entry from the words after `Unit: ' in its
+  /// description: "length", "time", "stress", "1" for pure numbers and others
+  /// in source/parameters/quantities.cc; for unknown words the dimension is
+  /// unknown. @p exponent is n or m in "1/(stress^n time)" or
+  /// "stress/length^m". Returns nothing for a description without `Unit: ': the
+  /// entry is no number.
   std::optional<EntryUnit>
   unit_of_entry(const std::string           &description,
                 const std::optional<double> &exponent = {});
 
-  /// The text with each number that has a unit replaced by that number in the
-  /// units of the scene: `25 MPa*(1 - x/(2 km))' becomes `25*(1 - x/(2000))'
-  /// with MPa and m. Throws ExcMessage with a part of a sentence: for a unit
-  /// that does not exist or does not fit the entry, or where the scene has no
-  /// @p units.
+  /// Replace each number with a unit in a text by that number in the units of
+  /// the scene: `25 MPa*(1 - x/(2 km))' becomes `25*(1 - x/(2000))' with MPa
+  /// and m. Throws ExcMessage with a part of a sentence if a unit does not
+  /// exist or does not fit the entry, or if the scene has no @p units.
   std::string
   without_units(const std::string &text,
                 const EntryUnit   &entry,
                 const Units       &units);
 
-  /// The units that the subsection `Units' of @p lines declares. Throws
-  /// ExcMessage.
+  /// Return the units that the subsection `Units' in @p lines declares. Throws
+  /// ExcMessage if they are wrong.
   Units
   declared_units(const std::vector<ParameterLine> &lines);
 
-  /// Replace the values of @p lines, which set entries of @p handler, by those
-  /// without_units(). Returns the values as they were in the file, by path,
-  /// where they had units. Throws ExcMessage with file and line.
+  /// Apply without_units() to the values of @p lines, which set entries of @p
+  /// handler. Returns the original values that had units, by path. Throws
+  /// ExcMessage with file and line.
   std::map<std::string, std::string>
   remove_units(std::vector<ParameterLine>     &lines,
                const Units                    &units,

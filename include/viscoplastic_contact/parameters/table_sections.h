@@ -17,10 +17,10 @@ namespace Viscoplastic
   void
   declare_tables(ParameterHandler &prm, const std::set<unsigned int> &numbers);
 
-  /// The tables of these numbers, which have been parsed from the lines, and in
-  /// the handler the names of their files as they can be found from anywhere.
-  /// Throws ExcMessage with the line of the parameter file, and that of the
-  /// table, where a table is not as it has to be.
+  /// Read the tables with these numbers, whose sections have been parsed, and
+  /// set the entries `File' in the handler to absolute paths. Throws ExcMessage
+  /// with the line of the parameter file, and that of the table, if a table is
+  /// invalid.
   Tables
   read_tables(ParameterHandler                 &prm,
               const std::set<unsigned int>     &numbers,

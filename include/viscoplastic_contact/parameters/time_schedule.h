@@ -9,7 +9,7 @@ namespace Viscoplastic
   /// One step of the partition 0 = t_0 < ... < t_N = T.
   struct TimeStep
   {
-    /// 1 for the first step.
+    /// The number of the step, beginning with 1.
     unsigned int n;
     /// t_{n-1}, t_n and k_n = t_n - t_{n-1}.
     double t_old, t, k;
@@ -19,7 +19,7 @@ namespace Viscoplastic
   /// Phases of equal steps, ending exactly on the listed times.
   struct TimeSchedule
   {
-    /// A phase and what it asks for.
+    /// A phase and its number of equal steps.
     struct Phase
     {
       double       start, end;
@@ -32,8 +32,7 @@ namespace Viscoplastic
       }
     };
 
-    /// @p phases as `end time: number of steps, ...', at most 1e9 steps;
-    /// throws ExcMessage.
+    /// Parse @p phases `end time: number of steps, ...'; throws ExcMessage.
     explicit TimeSchedule(const std::string &phases);
 
     unsigned int
@@ -45,7 +44,7 @@ namespace Viscoplastic
       return n;
     }
 
-    /// 1 <= n <= n_steps().
+    /// Return step n, 1 <= n <= n_steps().
     TimeStep
     step(const unsigned int n) const;
 
@@ -55,7 +54,7 @@ namespace Viscoplastic
       return phases.size();
     }
 
-    /// The phase, counted from 1, that ends at time t; 0 if none.
+    /// Return the phase, counted from 1, that ends at time t; 0 if none does.
     unsigned int
     phase_ending_at(const double t) const
     {
@@ -65,15 +64,15 @@ namespace Viscoplastic
       return 0;
     }
 
-    /// The phase with start <= t < end. 0 <= t < end_time().
+    /// Return the phase with start <= t < end, for 0 <= t < end_time().
     const Phase &
     phase_at(const double t) const;
 
-    /// The first end of a step after t. 0 <= t < end_time().
+    /// Return the first end of a step after t, for 0 <= t < end_time().
     double
     next_time(const double t) const;
 
-    /// The first step of the phase with the longest ones.
+    /// Return the first step of the phase with the largest steps.
     TimeStep
     largest_step() const;
 

@@ -65,12 +65,11 @@ namespace Viscoplastic
   long
   MeshReader::integer(const std::string &what)
   {
-    // Ids and numbers of nodes that anyone uses are far below; and signs can
-    // be changed and differences taken without a second look.
+    // Above all ids and node numbers in use; differences cannot overflow.
     constexpr long    largest = 1000000000000;
     const std::string text    = word(what);
     char             *end     = nullptr;
-    // Beyond its range, this is one end of it.
+    // Out of range, strtol() returns one end of the range.
     const long value = std::strtol(text.c_str(), &end, 10);
     if (*end != '\0' || value < -largest || value > largest)
       fail("expected " + what + ", found " + quoted(text));

@@ -7,7 +7,7 @@ namespace Viscoplastic
 {
   namespace
   {
-    // The types of Gmsh's reference manual that its meshers make.
+    // The element types of Gmsh's reference manual that its meshers make.
     const std::map<std::string, MeshReader::Shape> gmsh_shapes{
       {"15", {"point", 0, 1}},
       {"1", {"line", 1, 2}},
@@ -32,7 +32,7 @@ namespace Viscoplastic
 
 
 
-    /// The physical group of an entity, by its dimension and number.
+    /// The physical groups of an entity, by its dimension and number.
     using PhysicalGroups = std::map<std::pair<long, long>, std::vector<long>>;
 
 
@@ -53,7 +53,7 @@ namespace Viscoplastic
               reader.number("a bound of an entity");
             const unsigned long n = reader.count("the number of groups");
             for (unsigned long i = 0; i < n; ++i)
-              // negative where the group has it with the other orientation
+              // the sign is the orientation of the entity in the group
               result[{dimension, number}].push_back(
                 std::abs(reader.integer("a physical group")));
             if (dimension > 0)

@@ -32,7 +32,7 @@ namespace Viscoplastic
 
 
 
-    /// The text and, if there is none, why: the end of a sentence.
+    /// Return the converted mesh or, if that fails, the end of a sentence why.
     std::pair<std::string, std::string>
     run_script(const std::string &name, const PlaneModel plane_model)
     {
@@ -59,7 +59,7 @@ namespace Viscoplastic
                   " cannot be started: " + error.message() + by_hand};
 
       std::string text = all_of(output);
-      // The last line, after what Python may have to say.
+      // Keep the last line; Python may print others before it.
       std::string message = Utilities::trim(all_of(messages));
       message             = message.substr(message.rfind('\n') + 1);
       script.wait(error);
@@ -75,11 +75,11 @@ namespace Viscoplastic
 
 
 
-    /// What contrib/convert_mesh makes of the mesh file @p name: the same mesh
-    /// in Gmsh's format, as text, the same on all ranks. The first rank runs
-    /// the script as a process of its own: what a damaged file does to a reader
-    /// ends there. Collective. Throws ExcMessage with a sentence for the user
-    /// that names the file, also where the elements are not of @p plane_model.
+    /// Convert the mesh file @p name by contrib/convert_mesh and return the
+    /// mesh in Gmsh's format, as text, on all ranks. Rank 0 runs the script in
+    /// a separate process, so that a damaged file can only crash that one.
+    /// Throws ExcMessage with a sentence for the user that names the file, also
+    /// if the elements are not of @p plane_model. Collective.
     std::string
     convert_mesh_file(const std::string &name,
                       const PlaneModel   plane_model,
@@ -120,7 +120,7 @@ namespace Viscoplastic
 
 
 
-    /// What people have from CAD, but is no mesh of a body.
+    /// Refuse formats of CAD programs that contain no volume mesh.
     void
     refuse_geometry(const std::string &name, const std::string &suffix)
     {
@@ -152,7 +152,7 @@ namespace Viscoplastic
 
 
 
-    /// The nodes of the faces of a cell, as indices into Element::nodes.
+    /// Return the nodes of the faces of a cell, as indices into Element::nodes.
     std::vector<std::vector<unsigned int>>
     faces_of_cell(const unsigned int dim)
     {
@@ -176,8 +176,8 @@ namespace Viscoplastic
 
 
 
-    /// Nodes of a cell, or those of one of its faces, sorted, so that equal
-    /// ones compare equal.
+    /// Return the sorted nodes of a cell or of one of its faces, by which equal
+    /// cells or faces are found.
     template <typename Nodes>
     Nodes
     sorted_nodes(const MeshFile::Element         &element,
@@ -213,8 +213,7 @@ namespace Viscoplastic
 
 
 
-    /// What create_triangulation() takes for granted. Keeps the faces that are
-    /// on the boundary.
+    /// Check what create_triangulation() assumes, and keep only boundary faces.
     template <int dim>
     void
     check(MeshFile &mesh)
@@ -223,7 +222,7 @@ namespace Viscoplastic
       using Face            = std::array<unsigned int, n_face_nodes>;
       using Cell            = std::array<unsigned int, 1 << dim>;
       const auto cell_faces = faces_of_cell(dim);
-      // With the indices of the cells.
+      // Sorted nodes, with the index of the cell.
       std::vector<std::pair<Cell, std::size_t>> cells;
       std::vector<std::pair<Face, std::size_t>> faces;
       for (std::size_t c = 0; c < mesh.cells.size(); ++c)
@@ -261,8 +260,7 @@ namespace Viscoplastic
           f = end;
         }
 
-      // The id of an inner face means nothing; a face of no cell is a mistake
-      // that would otherwise go unnoticed.
+      // Ignore ids of inner faces; a face that belongs to no cell is an error.
       std::vector<MeshFile::Element> kept;
       std::map<Face, unsigned int>   lines;
       for (const auto &element : mesh.faces)
@@ -333,7 +331,7 @@ namespace Viscoplastic
       }
     catch (const std::exception &exception)
       {
-        // Lines are those of what has been read.
+        // Line numbers are those of the text that has been parsed.
         refuse("The mesh file '" + name + "' cannot be read as " +
                (is_msh ? "msh" : "what contrib/convert_mesh makes of it") +
                ": " + reason(exception) + ".");
@@ -351,7 +349,7 @@ namespace Viscoplastic
     std::string                                                  line;
     if (!std::getline(input, line) || line.compare(0, 11, "$MeshFormat") != 0)
       return result;
-    // They come before the nodes.
+    // The section $PhysicalNames comes before the nodes.
     while (std::getline(input, line) && line.size() < 1000 &&
            line.compare(0, 14, "$PhysicalNames") != 0)
       if (line.compare(0, 6, "$Nodes") == 0)

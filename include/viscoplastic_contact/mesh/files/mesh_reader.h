@@ -11,8 +11,8 @@
 
 namespace Viscoplastic
 {
-  /// The text of a mesh file, word by word, and the mesh that comes out of it.
-  /// All its errors are std::runtime_error that begin with the line.
+  /// Reads the text of a mesh file word by word and builds the mesh. All errors
+  /// are std::runtime_error with a message that begins with the line.
   class MeshReader
   {
   public:
@@ -21,7 +21,7 @@ namespace Viscoplastic
     {
       std::string  name;
       unsigned int dimension, n_nodes;
-      /// 1 if all nodes are corners.
+      /// The polynomial degree; 1 if all nodes are corners.
       unsigned int order = 1;
     };
 
@@ -30,16 +30,16 @@ namespace Viscoplastic
 
     // The text
 
-    /// Skip blanks and empty lines, and tell whether nothing is left.
+    /// Skip white space, and return whether the end of the file is reached.
     bool
     at_end();
 
-    /// Return the next word. The message if there is none says that @p what
-    /// should be there; the same holds for the functions below.
+    /// Return the next word. If there is none, the message says that @p what is
+    /// missing; the same holds for the functions below.
     std::string
     word(const std::string &what);
 
-    /// Read the next word, which has to be this one.
+    /// Read the next word, which must be this one.
     void
     expect(const std::string &keyword)
     {
@@ -56,8 +56,8 @@ namespace Viscoplastic
     double
     number(const std::string &what);
 
-    /// Read how many words of some kind follow; the rest of the file must be
-    /// able to hold them.
+    /// Read the number of items that follow and refuse more than the rest of
+    /// the file could hold.
     unsigned long
     count(const std::string &what);
 
@@ -83,7 +83,7 @@ namespace Viscoplastic
       return x;
     }
 
-    /// Throw the message, with the present line in front.
+    /// Throw the message, with the current line in front.
     [[noreturn]] void
     fail(const std::string &message) const
     {
@@ -105,9 +105,8 @@ namespace Viscoplastic
       mesh.nodes.push_back(x);
     }
 
-    /// Add a cell or face; elements of lower dimensions are left out. Shapes
-    /// other than lines, quadrilaterals and hexahedra with nodes at their
-    /// corners are refused.
+    /// Add a cell or face and ignore elements of lower dimensions. Only lines,
+    /// quadrilaterals and hexahedra with nodes at their corners are accepted.
     void
     add_element(const Shape             &shape,
                 const long               id,

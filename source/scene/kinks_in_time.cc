@@ -147,7 +147,7 @@ namespace Viscoplastic
                   1e-6 * least_share * path * width / end_time))
               return;
             std::array<double, n_eighths>              t;
-            std::array<std::vector<double>, n_eighths> at; // or none
+            std::array<std::vector<double>, n_eighths> at; // empty outside run
             for (int i = 0; i < n_eighths; ++i)
               {
                 t[i] = start + (i + first_eighth) * width / 8.;

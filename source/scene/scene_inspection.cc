@@ -294,7 +294,7 @@ namespace Viscoplastic
         is_used |= material->law && material->law->depends_on_temperature();
         if (!material->needs_absolute_temperature())
           continue;
-        // The default R is for kelvins; lower values must be degrees Celsius.
+        // The default R needs kelvins; values this low suggest degrees Celsius.
         constexpr double suspiciously_cold = 60.;
         double           least = std::numeric_limits<double>::infinity();
         for (const double T :

@@ -45,7 +45,7 @@ namespace Viscoplastic
       return output->directory();
     }
 
-    /// Begin all files anew, removing those of earlier runs.
+    /// Begin all files anew, and remove checkpoints of earlier runs.
     void
     begin();
 

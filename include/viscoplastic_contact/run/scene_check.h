@@ -20,7 +20,7 @@ namespace Viscoplastic
                   StepControl                               &control,
                   Announcer<dim>                            *announcer);
 
-  /// Refuse stages of construction for which no discretization exists.
+  /// Throw unless a discretization exists in all stages of construction.
   template <int dim>
   void
   check_stages(const FiniteElement<dim> &fe,

@@ -245,7 +245,7 @@ namespace Viscoplastic
       return all || role == BoundaryRole::clamped || is_glued();
     }
 
-    /// All expressions of the condition, including those of the friction bound.
+    /// All expressions in x and t of the condition, friction data included.
     std::vector<const Expression<dim> *>
     data() const;
 

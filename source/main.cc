@@ -25,8 +25,8 @@ namespace
 {
   using namespace Viscoplastic;
 
-  /// What @p work returns. Complaints quote entries as the files have them;
-  /// expressions that cannot be parsed are complained of with their place.
+  /// Return what @p work returns. In errors, quote entries as the files have
+  /// them; for expressions that cannot be parsed, add their place in the file.
   template <typename Work>
   std::string
   with_places(const Parameters &parameters, const Work &work)
@@ -56,7 +56,7 @@ namespace
       }
   }
 
-  /// For programs. Returns nothing, as runs do.
+  /// Print the scene as JSON. Returns nothing, as runs do.
   std::string
   print_scene(const Parameters &parameters, const bool with_means)
   {
@@ -69,7 +69,7 @@ namespace
     return "";
   }
 
-  /// The sentence of a run that a signal has ended; empty for others.
+  /// Return the sentence of a run ended by a signal; empty for others.
   template <int dim>
   std::string
   run(const Parameters  &parameters,
@@ -106,7 +106,7 @@ namespace
     try
       {
         const std::string interruption = run(command_line, console);
-        // Results come first: a log that fails does not end a run.
+        // Results are complete, so that a failing log does not end a run.
         if (interruption.empty())
           console.check();
         return interruption;
@@ -121,13 +121,13 @@ namespace
   void
   complain(const std::string &sentence)
   {
-    // One write: ranks that fail apart may do so at the same time.
+    // Use one write, since ranks that fail apart may write at the same time.
     std::cerr << "viscoplastic_contact: " + sentence + "\n";
   }
 
-  /// Whether all ranks come here within some seconds: then they have failed
-  /// together, and nobody waits for anybody. Those that come have left whatever
-  /// they did in common. @p communicator is used for nothing else.
+  /// Whether all ranks get here within 3 seconds: they have failed together,
+  /// and none waits for another one in a collective call. @p communicator must
+  /// not be used for anything else.
   bool
   all_have_failed(const MPI_Comm communicator)
   {
@@ -145,14 +145,14 @@ namespace
       }
   }
 
-  /// Complain of a failure on this rank, of several ranks. Does not return if
-  /// others go on.
+  /// Print the failure of this rank in a parallel run. Does not return if other
+  /// ranks go on.
   void
   complain_in_parallel(const std::string &sentence, const MPI_Comm communicator)
   {
     if (!all_have_failed(communicator))
       {
-        // Others may be in the middle of something that this rank has left.
+        // Others may wait in a collective call that this rank has left.
         complain(sentence);
         MPI_Abort(MPI_COMM_WORLD, 1);
       }
@@ -163,7 +163,7 @@ namespace
       complain(each);
   }
 
-  /// What a task prints that computes nothing.
+  /// Return what a task prints that computes nothing; empty for others.
   std::string
   text_of(const CommandLine &command_line)
   {
@@ -193,7 +193,7 @@ main(int argc, char *argv[])
   const std::vector<std::string> arguments(argv + 1, argv + argc);
   const bool                     is_single = run_without_mpi_job();
 #ifdef M_ARENA_MAX
-  // The memory in which a thread writes fields is also that of time steps.
+  // With one arena, time steps reuse the memory of the output thread.
   mallopt(M_ARENA_MAX, 1);
 #endif
 
@@ -219,7 +219,7 @@ main(int argc, char *argv[])
     mpi.emplace(n_hidden_arguments, argv, 1);
   unsigned int rank        = 0;
   bool         is_parallel = false;
-  // For the case that something fails.
+  // Used in complain_in_parallel() only.
   MPI_Comm of_failures = MPI_COMM_NULL;
   if (mpi)
     {
@@ -250,7 +250,7 @@ main(int argc, char *argv[])
             complain(interruption);
           return 3;
         }
-      // A batch script that forgets the scene must not go on.
+      // A batch script without a scene must fail.
       const bool is_guide = command_line.task == CommandLine::Task::guide;
       if (rank == 0)
         AssertThrow((is_guide ? std::cerr : std::cout) << text << std::flush,

@@ -7,7 +7,7 @@ namespace Viscoplastic
 {
   namespace
   {
-    /// The nodes of the face by their first degrees of freedom.
+    /// Return the nodes of the contact face by their first degrees of freedom.
     template <int dim>
     std::map<types::global_dof_index, unsigned int>
     nodes_by_dof(const ContactFace<dim> *face)
@@ -21,8 +21,8 @@ namespace Viscoplastic
 
 
 
-    /// Call act(value), a reference, for all that contact and truncations know
-    /// of a node.
+    /// Call act(value) with a reference to each number of contact and
+    /// truncations at a node.
     template <typename StateType, typename TruncationType, typename Action>
     void
     for_each_value(const ContactLayout                 &face,
@@ -53,10 +53,10 @@ namespace Viscoplastic
 
 
 
-    /// Contact at the nodes of some cells' vertices.
+    /// Contact data at nodes, which are vertices of the cells of a rank.
     struct PackedContact
     {
-      /// A bit a vertex with points, and how many points its node has.
+      /// A bit per vertex of a cell with contact points; points per node.
       std::vector<std::uint8_t> vertices, n_points;
       std::vector<double>       values;
       std::vector<bool>         sticks;
@@ -71,10 +71,10 @@ namespace Viscoplastic
 
 
 
-    /// What a rank knows at its cells, in their order.
+    /// The data at the owned cells of a rank, in their order.
     struct PackedPart
     {
-      /// A bit a vertex with values here.
+      /// A bit for each vertex of a cell with values in this part.
       std::vector<std::uint8_t> vertices;
       std::vector<double>       nodal, samples, estimate;
       PackedContact             points;
@@ -90,7 +90,7 @@ namespace Viscoplastic
 
 
 
-    /// Those of the fields that have been packed.
+    /// Return the fields that have been packed.
     template <typename Field, std::size_t n>
     std::vector<Field>
     packed_ones(const std::array<bool, n>  &is_packed,
@@ -187,8 +187,8 @@ namespace Viscoplastic
 
   namespace
   {
-    /// The owned and the ghost cells of this rank, owned ones with their index:
-    /// vertices of owned cells are vertices of owned or ghost cells elsewhere.
+    /// Return the owned cells of this rank with their index, and its ghost
+    /// cells, since values at an owned node may be packed with a ghost cell.
     template <int dim>
     auto
     local_cells(const AdmissibleSpace<dim> &space)
@@ -206,9 +206,9 @@ namespace Viscoplastic
 
 
 
-    /// Read the values of all fields at the vertices with these bits of a cell,
-    /// which is null if this rank does not know it, from position @p next on.
-    /// Returns how many of the vertices are nodes of this rank.
+    /// Read the values of all fields at vertices of a cell with bits in @p
+    /// vertices, from position @p next on. @p cell is null if not on this rank.
+    /// Returns how many of these vertices are nodes owned by this rank.
     template <typename Cell>
     unsigned int
     read_nodes(const std::uint8_t              vertices,
@@ -242,7 +242,7 @@ namespace Viscoplastic
 
 
 
-    /// Takes contact at nodes out of what a rank has packed, node by node.
+    /// Reads contact data at nodes, packed by one rank, in their order.
     class ContactReader
     {
     public:
@@ -256,9 +256,9 @@ namespace Viscoplastic
         , truncations(truncations)
       {}
 
-      /// Read the nodes at the vertices with these bits of a cell, which is
-      /// null if this rank does not know it. Returns how many are nodes of its
-      /// face.
+      /// Read the data at vertices of a cell with bits in @p vertices. @p cell
+      /// is null if not on this rank. Returns how many of these vertices are
+      /// nodes of the face.
       template <typename Cell>
       unsigned int
       read(const std::uint8_t                                     vertices,
@@ -290,7 +290,7 @@ namespace Viscoplastic
       }
 
     private:
-      /// The next node that was packed is @p node, or none of this rank.
+      /// Read the next packed node into @p node, or skip it if that is empty.
       void
       read(const std::optional<unsigned int> node)
       {
@@ -340,7 +340,7 @@ namespace Viscoplastic
     const auto sampled =
       packed_ones(packed.has_sample_field, sample_fields(state));
     const unsigned int n_fields = targets.size();
-    const std::size_t  n_z = stress_space.n_samples * 6; // a cell and field
+    const std::size_t  n_z = stress_space.n_samples * 6; // per cell and field
 
     const auto                     cells = local_cells(space);
     std::vector<DistributedVector> values(n_fields, space.owned_vector());
@@ -412,7 +412,7 @@ namespace Viscoplastic
                       [](const Tensor<2, 3> &tilt) {
                         return tilt.norm_square() == 0.;
                       }))
-        truncation->tilt.clear(); // there was none
+        truncation->tilt.clear(); // there is none
     for (unsigned int f = 0; f < n_fields; ++f)
       {
         *targets[f] = space.ghosted_vector();

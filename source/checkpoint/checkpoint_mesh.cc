@@ -7,7 +7,7 @@ namespace Viscoplastic
 {
   namespace
   {
-    /// The number of refinement levels that p4est, and therefore CellId, has.
+    /// The largest refinement level of p4est and, therefore, of CellId.
     constexpr unsigned int
     max_level(const unsigned int dim)
     {
@@ -57,8 +57,8 @@ namespace Viscoplastic
     for (auto word = words.begin(); word != words.end(); word += binary.size())
       {
         std::copy_n(word, binary.size(), binary.begin());
-        // CellId takes for granted what it reads: coarse cell, level and
-        // dimension, children.
+        // CellId does not check coarse cell, dimension, level and children that
+        // it is constructed from.
         require_sense(binary[0] < n_coarse_cells && binary[1] % 4 == dim &&
                       binary[1] / 4 <= max_level(dim));
         cells.emplace_back(binary);
@@ -80,7 +80,7 @@ namespace Viscoplastic
         const auto cells = unpack_mesh<dim>(part, triangulation.n_cells(0));
         leaves.insert(leaves.end(), cells.begin(), cells.end());
       }
-    // A cell comes before its descendants, and these before the next cell.
+    // CellId orders a cell before its descendants, these before the next cell.
     std::sort(leaves.begin(), leaves.end());
 
     const MPI_Comm communicator = triangulation.get_communicator();
@@ -140,8 +140,8 @@ namespace Viscoplastic
   describe_coarse_mesh(
     const parallel::distributed::Triangulation<dim> &triangulation)
   {
-    // Vertices in the order in which the cells have them first, which does not
-    // depend on how the mesh has been refined.
+    // Number vertices in the order in which they appear first in cells, which
+    // does not depend on refinement.
     CoarseMesh                            mesh;
     std::map<unsigned int, std::uint32_t> number;
     const auto                            add = [&mesh](const std::uint32_t n) {

@@ -20,7 +20,7 @@ namespace Viscoplastic
   {
     const std::string manifest_name = "manifest.txt";
     const std::string unfinished = ".unfinished", outdated = ".outdated";
-    // What an unfinished checkpoint has instead of a manifest.
+    // The list that an unfinished checkpoint has instead of a manifest.
     const std::string list_name       = "unfinished.txt";
     const std::string first_of_a_list = "viscoplastic_contact list of files 1";
 
@@ -68,10 +68,9 @@ namespace Viscoplastic
 
 
 
-    /// The files of a directory that are the program's, as its manifest or list
-    /// there says, which come last: whatever ends the program while it removes
-    /// them in this order, what remains is still known. Empty for a directory
-    /// of somebody else.
+    /// Return the files in a directory that its manifest or list names, and
+    /// these two last: if removal in this order is interrupted, the rest is
+    /// still known. Empty if the directory is not from this program.
     std::vector<std::string>
     own_files(const std::string &directory)
     {
@@ -85,7 +84,7 @@ namespace Viscoplastic
             continue;
           const bool is_ours =
             text->compare(0, beginning.size(), beginning) == 0;
-          // A list that is cut short is alone: the other files come after it.
+          // A truncated list is the only file: all others come after it.
           const bool is_begun =
             name == list_name &&
             beginning.compare(0, text->size(), *text) == 0 &&
@@ -106,9 +105,9 @@ namespace Viscoplastic
 
 
 
-    /// Remove what the program has written in a directory, and the directory
-    /// unless something else is in it. Returns whether it was a checkpoint; @p
-    /// remarks takes a sentence if the directory stays.
+    /// Remove the files that the program has written in a directory, and the
+    /// directory if it is empty then; otherwise adds a sentence to @p remarks.
+    /// Returns whether there was a manifest or list.
     bool
     remove_own(const std::string &path, std::vector<std::string> &remarks)
     {
@@ -142,7 +141,7 @@ namespace Viscoplastic
 
 
 
-    /// @p path, or with a number after it, so that there is no such file.
+    /// Return @p path, with a number appended if it exists already.
     std::string
     unused(const std::string &path)
     {
@@ -233,7 +232,7 @@ namespace Viscoplastic
         }
       catch (const std::exception &exception)
         {
-          // Make room; the checkpoints before are what counts.
+          // Free the space on disk; earlier checkpoints stay.
           if (rank == 0 && !temporary.empty())
             try
               {
@@ -246,7 +245,7 @@ namespace Viscoplastic
         }
     };
 
-    // Rank 0 says which files are to come before any of them is there.
+    // Rank 0 lists all files before any of them is written.
     std::vector<std::string> names;
     for (const auto &file : files)
       names.push_back(file.first);
@@ -295,7 +294,7 @@ namespace Viscoplastic
       write_file(temporary + manifest_name, manifest.text());
       fs::remove(temporary + list_name);
       synchronize_directory(temporary);
-      // A directory cannot replace another one.
+      // A directory cannot be renamed to an existing one.
       std::string aside;
       if (fs::exists(fs::symlink_status(final_path)))
         {
@@ -332,7 +331,7 @@ namespace Viscoplastic
         CheckpointManifest manifest;
         try
           {
-            // Rank 0 reads, so that all see the same.
+            // Only rank 0 reads: all ranks have to see the same text.
             fail_together(communicator, [&]() {
               if (rank == 0)
                 text = read_file(path(n) + '/' + manifest_name);

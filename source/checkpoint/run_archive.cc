@@ -20,7 +20,7 @@ namespace Viscoplastic
 
 
 
-    /// The entries and, of tables, what is in their files.
+    /// Return the values of all entries and the checksums of files of tables.
     std::map<std::string, std::string>
     values_with_tables(const Parameters &parameters)
     {
@@ -33,8 +33,8 @@ namespace Viscoplastic
 
 
 
-    /// Write to, or read from, an archive what is the same on all ranks. What
-    /// a step makes anew is not here.
+    /// Write or read the data that are the same on all ranks, except for those
+    /// that each step computes anew.
     template <int dim, typename Archive>
     void
     exchange_run(Archive &archive, RunState<dim> &run)
@@ -59,7 +59,7 @@ namespace Viscoplastic
 
 
 
-    /// An optional value that is there after reading if it was at writing.
+    /// Write or read whether a value is present; on reading, make it so.
     template <typename Archive, typename T>
     bool
     exchange_presence(Archive &archive, std::optional<T> &value)
@@ -73,8 +73,8 @@ namespace Viscoplastic
 
 
 
-    /// Exchange what the time stepper keeps but for truncations and fields,
-    /// which have values at nodes and samples.
+    /// Write or read the data that the time stepper keeps between steps, except
+    /// for truncations and fields, which have values at nodes and samples.
     template <int dim, typename Archive>
     void
     exchange_memory(Archive &archive, StepperMemory<dim> &memory)
@@ -89,8 +89,8 @@ namespace Viscoplastic
 
 
 
-    /// What a quantity of interest has of fields: those that its tangents are
-    /// of, and its dual solutions in the place of what else nodes have.
+    /// Return the fields of a quantity of interest as a state: those of the
+    /// linearization, with dual solutions in place of velocity and initial_u.
     template <int dim>
     State<dim>
     fields_of_quantity(const typename QuantityEstimator<dim>::Memory &memory,
@@ -107,7 +107,7 @@ namespace Viscoplastic
 
 
 
-    /// The truncations that preconditioners were built for.
+    /// Return the truncations for which preconditioners were built.
     template <typename MemoryType>
     auto
     truncations(MemoryType &memory)
@@ -119,7 +119,7 @@ namespace Viscoplastic
       return result;
     }
 
-    /// Those that dual solutions are of.
+    /// Return the truncations of the dual solutions.
     template <typename MemoryType>
     auto
     dual_truncations(MemoryType &memory)
@@ -130,8 +130,8 @@ namespace Viscoplastic
 
 
 
-    /// Throw unless the schedule of the scene has the step of the checkpoint.
-    /// Those that the run has chosen must not pass its end.
+    /// Throw unless the schedule contains the step of the checkpoint, or, for
+    /// steps of controlled size, does not end before it.
     template <int dim>
     void
     check_schedule(const RunState<dim> &run, const std::string &path)
@@ -153,7 +153,7 @@ namespace Viscoplastic
 
 
 
-    /// Whether an entry decides what the unknowns are and what they mean.
+    /// Whether an entry determines the unknowns or their meaning.
     bool
     is_fixed(const std::string &path)
     {
@@ -166,7 +166,7 @@ namespace Viscoplastic
         return std::find(names.begin(), names.end(), entry) != names.end();
       };
       const std::string kind = section.substr(0, section.find(' '));
-      // The coarse mesh is compared as such.
+      // Meshes are compared themselves, not the names of files.
       if (section == "Geometry")
         return entry != "File";
       if (kind == "Material")
@@ -179,7 +179,7 @@ namespace Viscoplastic
                           "Removed at",
                           "Volumetric integration",
                           "Stress history"});
-      // What is in the file counts.
+      // Files are compared by checksums.
       if (kind == "Table")
         return entry != "File";
       if (kind == "Boundary")
@@ -203,8 +203,8 @@ namespace Viscoplastic
 
 
 
-    /// Whether a run gets a tolerance, or loses the one that it has: meshes and
-    /// schemes are others then. It may get another one.
+    /// Whether error control to a tolerance is switched on or off, which needs
+    /// other meshes and schemes. The tolerance itself may change.
     bool
     is_switched(const std::string &path,
                 const std::string &old_value,
@@ -438,13 +438,13 @@ namespace Viscoplastic
         }
       return !Utilities::MPI::logical_or(!complete, communicator);
     };
-    // On as many ranks as before, each finds all in its own file.
+    // On as many ranks as before, each rank has all data in its own file.
     AssertThrow(((n_ranks == checkpoint.n_ranks && unpack(rank, rank + 1)) ||
                  unpack(0, checkpoint.n_ranks)) &&
                   !has_bytes_to_spare,
                 ExcMessage("The checkpoint '" + store.path(checkpoint.n) +
                            "' does not fit the scene."));
-    if (changes.of_data) // of other tangents
+    if (changes.of_data) // linearized with other data
       memory.quantity = {};
     return memory;
   }

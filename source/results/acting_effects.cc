@@ -6,7 +6,7 @@ namespace Viscoplastic
 {
   namespace
   {
-    /// Add sentences on data of boundaries that have done nothing.
+    /// Add sentences on data of boundaries that have had no effect.
     template <int dim>
     void
     add_idle_data(const Scene<dim>                   &scene,
@@ -75,12 +75,12 @@ namespace Viscoplastic
         for (unsigned int p = 0; p < state.n_points(); ++p)
           if (const auto &point = discretization.face->layout().points[p];
               point.is_obstacle)
-            // A pressure that is nothing beside those of the body is one.
+            // Any pressure counts, however small beside those in the body.
             (state.multiplier[p][0] > 0. ||
                  (point.gives_way() && state.penetration(p) > 0.) ?
                touches :
                is_open) = true;
-        // A body that nothing else holds needs it even if no load presses.
+        // A body held by contact alone needs it even without any pressure.
         has_touched = has_touched ||
                       discretization.space.is_held_by_contact() ||
                       is_so(touches);
@@ -106,7 +106,7 @@ namespace Viscoplastic
                                        const RunSummary<dim> &run) const
   {
     std::vector<std::string> result;
-    // On a mesh that is far too coarse bodies may never meet.
+    // If the mesh is far too coarse, effects may be missing because of it.
     const double      error    = run.errors && run.errors->size > 0. ?
                                    run.errors->largest.space / run.errors->size :
                                    0.;
@@ -145,7 +145,7 @@ namespace Viscoplastic
           text += "; on bilateral contact 'Friction law' = glued gives the "
                   "same for less";
         text += '.';
-        // The tolerance of a quantity may leave stresses far less exact.
+        // With a tolerance of a quantity, stresses may be far less accurate.
         if (run.errors)
           text +=
             " Tractions of single nodes, as where cells change their "
@@ -183,7 +183,7 @@ namespace Viscoplastic
     if (scene.body_force && loads.count(body_force_id) == 0)
       result.push_back("the body force has never acted: 'Loads/Body force' has "
                        "been zero everywhere and at all times, and can go.");
-    // To a tolerance of a quantity, a first pass has found the mesh.
+    // With a tolerance of a quantity, an earlier pass may have found the mesh.
     if (scene.is_adaptive() && !mesh_has_changed &&
         !(scene.quantity && scene.parameters.error_control.has_tolerance()))
       result.push_back("adaptivity has never acted: the mesh has never "

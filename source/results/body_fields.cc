@@ -8,8 +8,8 @@ namespace Viscoplastic
 {
   namespace
   {
-    /// The strain in one direction that has the same (2/3 e:e)^(1/2), without
-    /// the change of volume.
+    /// Return the equivalent strain (2/3 e:e)^(1/2) of the deviator e of a
+    /// strain.
     double
     equivalent_strain(const SymmetricTensor<2, 3> &strain)
     {
@@ -18,7 +18,7 @@ namespace Viscoplastic
 
 
 
-    /// z_0 as it would be on the present mesh.
+    /// Return the initial z on the present mesh.
     template <int dim>
     IrreversibleStress
     initial_z(const StressSpace<dim> &stress_space, const State<dim> &state)
@@ -26,7 +26,7 @@ namespace Viscoplastic
       const Scene<dim> &scene = stress_space.space.scene;
       if (!scene.initial_displacement)
         return initial_irreversible_stress(stress_space, DistributedVector());
-      // The displacement that the state has kept is that of equilibrium.
+      // state.initial_u is then the displacement of the equilibrium.
       if (scene.parameters.initial_state.equilibrate)
         return make_initial_state(stress_space, true).z;
       return initial_irreversible_stress(stress_space, state.initial_u);
@@ -34,7 +34,7 @@ namespace Viscoplastic
 
 
 
-    /// The fields of the body whose values are means of cells.
+    /// Whether the values of a field are cell means.
     bool
     is_mean(const RecordedField field)
     {
@@ -54,8 +54,8 @@ namespace Viscoplastic
 
 
 
-    /// -E^-1 of the mean of a stress at the samples of a cell, zero if there is
-    /// none.
+    /// Return -E^-1 of the mean of a stress at the samples of a cell; zero if
+    /// @p stress is empty.
     template <int dim>
     SymmetricTensor<2, 3>
     minus_strain(const StressSpace<dim>   &stress_space,
@@ -92,7 +92,7 @@ namespace Viscoplastic
           field == RecordedField::displacement ? &u : &state.velocity);
 
     const Scene<dim> &scene = stress_space.space.scene;
-    // What the initial data have of irreversible strain has not crept.
+    // Irreversible strain of the initial data is not creep.
     if (cell_fields.count(RecordedField::creep_strain) > 0 &&
         scene.has_irreversible_stress() && // collective, also without cells
         (scene.initial_stress || scene.initial_displacement))
@@ -133,7 +133,7 @@ namespace Viscoplastic
   BodyFields<dim>::names(const std::set<RecordedField> &fields)
   {
     using Field = RecordedField;
-    // With their ranks as tensors.
+    // Names of columns and tensor ranks.
     static const std::map<Field, std::pair<std::string, unsigned int>> columns{
       {Field::displacement, {"displacement", 1}},
       {Field::velocity, {"velocity", 1}},

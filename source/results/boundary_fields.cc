@@ -96,7 +96,7 @@ namespace Viscoplastic
       }
     const auto areas  = boundary_weights(space, primaries),
                shares = boundary_weights(space, secondaries);
-    // What a node p opposite counts at a node q: Q_pq int phi_p.
+    // The weight of a secondary node p at a primary node q is Q_pq int phi_p.
     const auto visit = [&](const auto &act) {
       for (const auto &of_boundary : space.mortar_rows)
         for (const auto &[node, row] : of_boundary.second)
@@ -133,7 +133,7 @@ namespace Viscoplastic
               values.begin()[space.relevant.index_within_set(p) + d];
         });
         sums.compress(VectorOperation::add);
-        // Where nothing lies opposite, nothing sticks.
+        // Primary nodes without opposite nodes do not stick.
         const double      elsewhere = field == &slipping ? 1. : 0.;
         DistributedVector result    = space.owned_vector();
         for (std::size_t i = 0; i < space.owned.n_elements(); ++i)
@@ -267,7 +267,7 @@ namespace Viscoplastic
               break;
             }
           case RecordedField::traction:
-            // On the body: minus the multiplier.
+            // The traction on the body is minus the multiplier.
             append(condition.has_friction() && density.size() > 0 ?
                      -1. * tangential(vector(density),
                                       space.normal_at(first_dof, condition)) :

@@ -205,7 +205,7 @@ namespace Viscoplastic
                     normal += of_face.normal_vector(q) * of_face.JxW(q);
                     area += of_face.JxW(q);
                   }
-                // On the axis of a ring there is none.
+                // A face on the axis of revolution has no area and no normal.
                 if (area > 0.)
                   result.back().normal = normal / area;
               }

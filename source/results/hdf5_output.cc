@@ -14,14 +14,14 @@
 #  include <hdf5.h>
 #endif
 
-// The body as files of HDF5, which ranks write together, with a description in
-// XDMF: a value of vectors at each node, of means in each cell. Not by
-// deal.II's write_hdf5_parallel(): a thread may not call MPI, and it writes
-// doubles and tells of a full disk in debug builds alone.
+// Writes the body to HDF5 files, which all ranks write together, with a
+// description in XDMF: vectors have values at nodes, means in cells. deal.II's
+// write_hdf5_parallel() is not used: it calls MPI, which a thread must not,
+// writes doubles, and reports a full disk in debug builds only.
 
 namespace Viscoplastic
 {
-  /// The rows of a table on this rank, from the given one of all ranks' on.
+  /// The rows of a table on this rank; first_row counts the rows of all ranks.
   struct DataSet
   {
     std::string   name;
@@ -41,8 +41,8 @@ namespace Viscoplastic
 
   namespace
   {
-    /// Coordinates of nodes and, in the order of ParaView, nodes of cells.
-    /// Collective.
+    /// Return the coordinates of nodes, and the nodes of cells in the order of
+    /// ParaView. Collective.
     template <int dim>
     std::vector<DataSet>
     mesh_of(const BodyData<dim> &body)
@@ -81,7 +81,7 @@ namespace Viscoplastic
 
 
 
-    /// Vectors, with three components, and means.
+    /// Return the vectors, with three components, and the cell means.
     template <int dim>
     std::vector<DataSet>
     fields_of(const BodyData<dim> &body, const std::vector<DataSet> &mesh)
@@ -118,7 +118,7 @@ namespace Viscoplastic
 
 
 #ifdef DEAL_II_WITH_HDF5
-    /// An object of the library, closed at the end.
+    /// An object of the HDF5 library, which is closed by the destructor.
     struct Handle
     {
       const hid_t id;
@@ -154,7 +154,7 @@ namespace Viscoplastic
                      memory    = {H5Screate_simple(n_dims, own, nullptr),
                                   H5Sclose},
                      space = {H5Screate_simple(n_dims, all, nullptr), H5Sclose};
-        // Equal data make equal files.
+        // Without times, equal data make equal files.
         H5Pset_obj_track_times(creation, false);
         const Handle data = {H5Dcreate2(file,
                                         set.name.c_str(),
@@ -176,8 +176,8 @@ namespace Viscoplastic
 
 
 
-    /// Write a file: @p ranks together, or this one alone, without MPI, so that
-    /// a thread can do it. Throws ExcMessage, on all ranks.
+    /// Write a file: all @p ranks together, or, if absent, this rank alone and
+    /// without MPI, so that a thread can do it. Throws ExcMessage on all ranks.
     void
     write_hdf5(const std::string             &file,
                const std::vector<DataSet>    &data_sets,
@@ -193,7 +193,7 @@ namespace Viscoplastic
           H5Pset_fapl_mpio(access, *ranks, MPI_INFO_NULL);
           H5Pset_dxpl_mpio(transfer, H5FD_MPIO_COLLECTIVE);
         }
-      else // in memory
+      else // without MPI, in memory
         H5Pset_fapl_core(access, 1 << 16, false);
       std::string bytes;
       bool        good = true;
@@ -201,7 +201,7 @@ namespace Viscoplastic
         const Handle written = {
           H5Fcreate(part.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access),
           H5Fclose};
-        // Ranks do the same, whatever goes wrong.
+        // All ranks make the same calls, even after a failure.
         for (const DataSet &set : data_sets)
           good = write(written, set, transfer) && good;
         good = H5Fflush(written, H5F_SCOPE_GLOBAL) >= 0 && good;
@@ -236,13 +236,13 @@ namespace Viscoplastic
                const std::vector<DataSet> &,
                const std::optional<MPI_Comm> &)
     {
-      Assert(false, ExcInternalError()); // check_output_places() has refused it
+      Assert(false, ExcInternalError()); // refused by check_output_places()
     }
 #endif
 
 
 
-    /// An element of XDMF with the numbers of a data set in a file.
+    /// Return an XDMF element that refers to a data set in a file.
     std::string
     element(const std::string &name,
             const std::string &attributes,
@@ -268,7 +268,7 @@ namespace Viscoplastic
   Output<dim>::write_in_hdf5(const BodyData<dim> &body, const double t)
   {
     using DataSets = std::vector<DataSet>;
-    // Not by the thread that writes: HDF5 registers with MPI.
+    // Not in the thread that writes, since HDF5 registers with MPI.
     H5open();
     const auto mesh_now = std::make_shared<DataSets>(mesh_of(body));
     const auto fields = std::make_shared<DataSets>(fields_of(body, *mesh_now));

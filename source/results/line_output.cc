@@ -135,7 +135,7 @@ namespace Viscoplastic
   void
   LineOutput<dim>::synchronize()
   {
-    // The streams have no buffer left.
+    // The streams have been flushed by write().
     for (const std::string &name : names)
       Viscoplastic::synchronize(name);
   }

@@ -21,7 +21,7 @@ namespace Viscoplastic
 {
   namespace
   {
-    /// A series and its times, for ParaView.
+    /// The text of a PVD file that lists a series and its times for ParaView.
     std::string
     pvd_record(const std::string &series, const std::vector<double> &times)
     {
@@ -36,8 +36,8 @@ namespace Viscoplastic
 
 
 
-    /// The same in XDMF. Each time has a file of its own, so that what has been
-    /// written remains; the three readers of ParaView want this pointer.
+    /// The same in XDMF. Each time has its own file, so that earlier outputs
+    /// are not rewritten; all three readers of ParaView require this pointer.
     std::string
     xdmf_record(const std::string &series, const std::size_t n_outputs)
     {
@@ -152,8 +152,8 @@ namespace Viscoplastic
     const bool       is_hdf5 = is_in_hdf5(name);
     const std::regex piece(
       name + "_([0-9]{5,9})[.](pvtu|[0-9]+[.]vtu|xml|h5)([.]part)?");
-    // Earlier parts of a run may have had other ranks, and so other pieces; the
-    // mesh was new at other times.
+    // Earlier parts of a run may have had other numbers of ranks and thus of
+    // pieces, and new meshes at other times.
     const auto is_listed = [&](const std::string &n, const std::string &file) {
       std::ifstream list(
         path + (is_hdf5 ? "solution_" + n + ".xml" : name + '_' + n + ".pvtu"));
@@ -216,7 +216,7 @@ namespace Viscoplastic
     const OutputParameters &parameters = scene.parameters.output;
     if (parameters.fields_interval > 0.)
       {
-        // Has a multiple of the interval been passed? Times carry rounding.
+        // Whether the step passes a multiple of the interval, up to rounding.
         const double slack = 1e-9 * scene.schedule.end_time();
         return std::floor((step.t + slack) / parameters.fields_interval) >
                std::floor((step.t_old + slack) / parameters.fields_interval);
@@ -262,15 +262,15 @@ namespace Viscoplastic
         {
           writing = std::async(std::launch::async, [to_write]() mutable {
             for (auto &write : to_write)
-              std::exchange(write, nullptr)(); // with what it has kept
+              std::exchange(write, nullptr)(); // frees the data, too
           });
           return;
         }
       catch (const std::system_error &)
         {
-          // No further thread is allowed here.
+          // Threads are not available: write here.
         }
-    // One at a time: ranks write some of them together.
+    // One at a time, since ranks write some of the files together.
     for (const auto &write : to_write)
       fail_together(communicator, write);
   }
@@ -310,8 +310,8 @@ namespace Viscoplastic
     const std::set<unsigned int>   beyond_range = data.cut_off_infinite();
     const std::vector<std::string> data_sets    = data.names;
 
-    // What DataOutInterface::write_vtu_with_pvtu_record() writes; its errors
-    // would name no file.
+    // Like DataOutInterface::write_vtu_with_pvtu_record(), whose errors do not
+    // name the file.
     const unsigned int n_ranks = Utilities::MPI::n_mpi_processes(communicator);
     const unsigned int rank    = Utilities::MPI::this_mpi_process(communicator);
     const std::string  record  = record_name(name, times.size() - 1);
@@ -350,7 +350,7 @@ namespace Viscoplastic
                                const std::vector<std::string> &data_sets,
                                const std::set<unsigned int>   &cut_off)
   {
-    // Vectors have a data set for each component.
+    // There is a data set for each component of a vector.
     std::vector<int> is_cut(data_sets.size() + 1, 0);
     for (const unsigned int i : cut_off)
       is_cut[i] = 1;
@@ -409,7 +409,7 @@ namespace Viscoplastic
                                   {"velocity", &state.velocity}},
                        {}};
 
-    // The same fields on all ranks, also on those without cells.
+    // All ranks need the same fields, including ranks without cells.
     const std::set<RecordedField> fields = BodyFields<dim>::of_output(scene);
     const BodyFields<dim>         means(laws, state, fields);
     for (std::string &name : BodyFields<dim>::names(fields))

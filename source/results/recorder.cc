@@ -48,7 +48,7 @@ namespace Viscoplastic
     for (const Point<dim> &x : scene.output_points)
       probes.emplace_back(on_mesh.space, x);
     std::set<RecordedField> fields = scene.parameters.output.point_fields;
-    fields.erase(RecordedField::displacement); // which is there without
+    fields.erase(RecordedField::displacement); // always recorded
     if (!fields.empty() && !scene.output_points.empty())
       point_fields = std::make_unique<FieldProbes<dim>>(on_mesh,
                                                         scene.output_points,
@@ -68,7 +68,7 @@ namespace Viscoplastic
     const bool          is_initial = step.time_step.n == 0;
     StepQuantities<dim> quantities;
     {
-      // All ranks compute; rank 0 writes.
+      // All ranks compute the quantities; rank 0 writes them.
       TimerOutput::Scope phase(timer, "balance");
       quantities = measure_step(*discretization, old, step);
       DistributedVector        difference;
@@ -159,7 +159,7 @@ namespace Viscoplastic
     run.has_friction  = scene.has_friction();
     if (run.has_friction)
       {
-        // New meshes may have more friction points, or fewer.
+        // The area of all friction points depends on the mesh.
         if (friction.slip_area > run.slip_area.value ||
             run.slip_area.value == 0.)
           run.friction_area = friction.slip_area + friction.stick_area;
@@ -170,8 +170,7 @@ namespace Viscoplastic
       }
     if (scene.is_adaptive() && !has_error_estimate)
       run.error_estimate = quantities.refinement_estimate;
-    // Initial data that have not been brought into equilibrium have no
-    // estimate.
+    // Initial data have no estimate unless they solve for equilibrium.
     if (run.errors && (step.time_step.n > 0 || step.end.is_solution))
       {
         const ErrorEstimate &estimate = step.end.errors;
@@ -254,7 +253,7 @@ namespace Viscoplastic
         if (time_step.n > 0)
           expected_step.add_step(time_step.k);
         present.done = time_step.t / scene.schedule.end_time();
-        // Implicit steps report 2/r, but pass it.
+        // Implicit steps report 2/r, but are not limited by it.
         const double limit = step.is_implicit ?
                                std::numeric_limits<double>::infinity() :
                                step.step_limit;
@@ -274,7 +273,7 @@ namespace Viscoplastic
   Recorder<dim>::resume(const State<dim> &state, const double seconds_before)
   {
     earlier_seconds = seconds_before;
-    // For the progress this is the beginning.
+    // The progress counts from the resumed state.
     progress.report({0,
                      state.t,
                      state.k,

@@ -13,14 +13,14 @@
 #include <limits>
 #include <sstream>
 
-// What the numbers of a run have to be taken with: sentences for the user.
+// Sentences for the user that qualify the results of a run.
 
 namespace Viscoplastic
 {
   namespace
   {
-    /// What rounding has lost of a step, as the reason of its failure; empty if
-    /// that is little.
+    /// Return the loss by rounding in a step, as the reason of a failure; empty
+    /// if it is small.
     template <int dim>
     std::string
     loss_by_rounding(const Discretization<dim> &discretization,
@@ -35,7 +35,7 @@ namespace Viscoplastic
         quantities.max_displacement /
         body_diagonal(discretization.space.dof_handler.get_triangulation());
       std::string loss;
-      // Loads that are not rounding, of which rounding loses a part.
+      // The loads are not rounding themselves, but lose a part by rounding.
       if (const double missing = stable_norm(quantities.sum_of_forces);
           missing > lost * std::max(largest_force, quantities.load_size) &&
           missing < quantities.load_size &&
@@ -65,8 +65,8 @@ namespace Viscoplastic
 
 
 
-    /// What small strains, which are assumed, leave of the results; empty where
-    /// that is enough.
+    /// Return a remark on strains or displacements that are too large for the
+    /// assumption of small strains; empty if they are not.
     template <int dim>
     std::string
     remark_on_strain(const Scene<dim>      &scene,
@@ -74,7 +74,7 @@ namespace Viscoplastic
                      const double           size)
     {
       const bool is_far = run.displacement.value > size;
-      // Scenes without units are mathematics, where sizes mean nothing.
+      // Without units, scenes may be mathematical problems of any size.
       if (!is_far && !(run.strain.value >
                        (scene.parameters.units.are_declared() ? 0.1 : 1.)))
         return "";
@@ -103,8 +103,8 @@ namespace Viscoplastic
 
 
 
-    /// The center and the width of a cell of the finest level: of the one whose
-    /// center comes first, x before y. Collective.
+    /// Return center and width of the finest cell; of several, that with the
+    /// lexicographically first center. Collective.
     template <int dim>
     std::pair<Point<dim>, double>
     finest_cell(const Triangulation<dim> &triangulation)
@@ -152,7 +152,7 @@ namespace Viscoplastic
       if (told.insert(subject).second)
         console.remark(sentence);
     };
-    // Beside stresses that balance each other the forces may be nothing.
+    // Forces may be negligible beside stresses that balance each other.
     const bool is_beside_stresses =
       quantities.largest_force * quantities.max_displacement <
       std::min(1., 1e3 * step.report.tolerance) * quantities.stored_energy;
@@ -173,7 +173,7 @@ namespace Viscoplastic
                     number(step.report.tolerance, 6) +
                     ": cells that are less flat, stiffness that differs less "
                     "or Poisson's ratio farther from 1/2 would leave less.");
-    constexpr unsigned int most_doubts = 3; // that are told
+    constexpr unsigned int most_doubts = 3; // largest number printed
     if (!step.report.doubt.empty() && run.doubtful_steps.size() < most_doubts)
       {
         run.doubtful_steps.push_back(
@@ -196,7 +196,7 @@ namespace Viscoplastic
                         "that its rigid motions are arbitrary; a small load "
                         "that presses it determines them.");
       }
-    // Beside the nodal forces of the stress: loads may balance each other.
+    // Compare with the nodal forces of the stress, since loads may cancel.
     if (!scene.supports.empty() && step.time_step.n > 0)
       {
         const double size = step.end.forces.internal.l1_norm();
@@ -361,7 +361,7 @@ namespace Viscoplastic
         " % on average; smaller steps or 'Solver/Coulomb "
         "pressure' = Newton mend this.");
 
-    // What is missing is the work of friction, see EnergyBalance.
+    // The defect is an error of the work of friction, see EnergyBalance.
     if (const double missing = balance.defect(),
         friction             = balance.friction_dissipation;
         run.has_friction && !scene.has_stages() &&
@@ -390,7 +390,7 @@ namespace Viscoplastic
     for (const std::string &what : effects.that_never_acted(scene, run))
       result.push_back("Note: " + what);
 
-    // What meshes do is no physics.
+    // Energy from changes of the mesh is not physical.
     if (std::abs(balance.adaptation_energy) > 0.1 * balance.scale())
       result.push_back("Warning: changes of the mesh have added " +
                        number(balance.adaptation_energy, 3) +

@@ -66,7 +66,7 @@ namespace Viscoplastic
 
 
 
-    /// The model of the processor that rank 0 runs on, as Linux names it.
+    /// Return the processor model of this rank, as Linux names it.
     std::string
     processor()
     {
@@ -84,7 +84,7 @@ namespace Viscoplastic
 
 
 
-    /// Whether a file begins as one of this program does.
+    /// Whether a file begins like a file of this program.
     bool
     is_own(const std::string &name, const std::string &beginning)
     {
@@ -92,10 +92,10 @@ namespace Viscoplastic
       std::string   text(200, ' ');
       file.read(text.data(), static_cast<std::streamsize>(text.size()));
       text.resize(file.gcount());
-      // Columns may have units.
+      // Names of columns may be followed by unit labels.
       static const std::regex label(" \\[[^\\]\n]*\\]?");
       text = std::regex_replace(text, label, "").substr(0, beginning.size());
-      // It may be cut short.
+      // The file may be truncated.
       return file.is_open() && beginning.compare(0, text.size(), text) == 0;
     }
   } // namespace
@@ -172,7 +172,7 @@ namespace Viscoplastic
                          {"stress", units.stress.name}};
     for (const auto &[place, name] : scene.names.names)
       record["names"][place.text()] = name;
-    // parameters.prm has them as they were written.
+    // parameters.prm has these entries as they were written.
     if (const auto entries = scene.parameters.entries_with_units();
         !entries.empty())
       record["entries_with_units"] = entries;

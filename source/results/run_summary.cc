@@ -19,14 +19,14 @@ namespace Viscoplastic
               const std::string &name,
               const std::string &value)
     {
-      // Names of places may be longer than the column.
+      // Names of places may be wider than the column.
       out << "  " << std::left << std::setw(25) << name << std::right << ' '
           << value << '\n';
     }
 
 
-    /// Numbers with a unit, in a handy multiple of it where they are large or
-    /// small, as pictures show them: 0.2 mm for 0.0002 m.
+    /// Return numbers with a unit, with an SI prefix chosen for large or small
+    /// ones: 0.2 mm for 0.0002 m.
     std::string
     with_unit(const std::vector<double> &values, std::string unit)
     {
@@ -58,7 +58,7 @@ namespace Viscoplastic
 
 
 
-    /// Numbers behind which their units stand, if the scene declares any.
+    /// Prints numbers with their units, if the scene declares any.
     template <int dim>
     struct WithUnits
     {
@@ -80,7 +80,7 @@ namespace Viscoplastic
 
 
 
-    /// The quantities at the end of the run.
+    /// Print the quantities at the end of the run.
     template <int dim>
     void
     print_end(std::ostream          &out,
@@ -89,7 +89,7 @@ namespace Viscoplastic
               const RunSummary<dim> &run)
     {
       out << "At t = " << WithUnits<dim>{units}.time(run.t) << ":\n";
-      // Forces that vanish leave what the solver's tolerance is.
+      // Forces below this part of the largest are solver errors and print as 0.
       constexpr double noise         = 1e-5;
       double           largest_force = 0.;
       for (const StatisticsRow::Entry &entry : run.at_end)
@@ -98,7 +98,7 @@ namespace Viscoplastic
             largest_force = std::max(largest_force, std::abs(force));
       for (const StatisticsRow::Entry &entry : run.at_end)
         {
-          // New meshes may all have been those of passes before.
+          // The mesh may have changed in earlier passes only.
           if (entry.name == "adaptation_energy" && entry.values[0] == 0.)
             continue;
           std::vector<double> values = entry.values;
@@ -116,7 +116,7 @@ namespace Viscoplastic
 
 
 
-    /// The largest values of the run.
+    /// Print the largest values of the run.
     template <int dim>
     void
     print_largest(std::ostream          &out,
@@ -173,7 +173,7 @@ namespace Viscoplastic
 
 
 
-    /// When what was not so at the beginning began.
+    /// Print the first touch and slip, unless they are in the first step.
     template <int dim>
     void
     print_first(std::ostream          &out,
@@ -191,7 +191,7 @@ namespace Viscoplastic
 
 
 
-    /// What step control and the stability limit did to the steps.
+    /// Print how step control and the stability limit affected the steps.
     template <int dim>
     void
     print_steps(std::ostream &out, const RunSummary<dim> &run)
@@ -223,7 +223,7 @@ namespace Viscoplastic
 
 
 
-    /// The errors against a known solution, and the estimated ones.
+    /// Print an estimated error by its causes.
     template <int dim>
     void
     print_parts(std::ostream          &out,
@@ -370,7 +370,7 @@ namespace Viscoplastic
           }
         remaining.erase(found);
       }
-    // Those that the list lacks, under their own names.
+    // Phases that are not in the list, under their own names.
     for (const auto &[name, time] : remaining)
       print_line(name, time, "");
     const double others = rest;

@@ -33,7 +33,7 @@ namespace Viscoplastic
     std::ifstream  file(name, std::ios::binary);
     TableBeginning result;
     std::string    line;
-    // A line without its end is unfinished.
+    // An incomplete last line, without its end, is dropped.
     for (; std::getline(file, line) && !file.eof();
          result.size += line.size() + 1)
       if (result.size == 0)
@@ -105,18 +105,18 @@ namespace Viscoplastic
                 ExcMessage(
                   "The columns of '" + name +
                   "' are not those of this run, which cannot go on with it."));
-    // A result that is none must not pass for one. No limit is imposed where
+    // Refuse values that are not finite. The stability limit is infinite where
     // nothing flows.
     for (std::size_t i = 0; i < values.size(); ++i)
       {
         const std::string &column   = columns[i];
         const double       value    = values[i];
         const bool         is_limit = column == "step_limit" && value > 0.;
-        // Not known between the times of a reference.
+        // NaN between the times of a reference solution.
         const bool is_unknown =
           column.rfind("error_", 0) == 0 || column.rfind("exact_", 0) == 0 ||
           column == "estimate_recovery" ||
-          // Of a point in an absent material.
+          // NaN at a point in an absent material.
           (column.rfind("point", 0) == 0 && std::isnan(value));
         if (!std::isfinite(value) && !is_limit && !is_unknown)
           refuse("In step " + as_text(values[0]) + ", '" + column + "' is " +
@@ -139,7 +139,7 @@ namespace Viscoplastic
   void
   Statistics::synchronize()
   {
-    // The stream has no buffer left: write() flushes.
+    // The stream has been flushed by write().
     Viscoplastic::synchronize(name);
   }
 } // namespace Viscoplastic

@@ -4,14 +4,14 @@
 #include <viscoplastic_contact/results/run_summary.h>
 #include <viscoplastic_contact/results/unit_labels.h>
 
-// What a run records of each step; doc/results.md tells what it means.
+// Makes the row of statistics.csv; doc/results.md explains the columns.
 
 namespace Viscoplastic
 {
   namespace
   {
-    /// Of so many points of `Output/Points' the closing words tell where they
-    /// have gone.
+    /// Displacements at `Output/Points' are printed at the end for at most this
+    /// number of points.
     constexpr std::size_t most_printed = 4;
 
 
@@ -77,7 +77,7 @@ namespace Viscoplastic
 
 
 
-    /// What contact and friction of the step are like.
+    /// Add the columns of contact and friction.
     template <int dim>
     void
     add_contact(const Scene<dim>          &scene,

@@ -9,8 +9,7 @@ namespace Viscoplastic
 {
   namespace
   {
-    /// The largest length of a nodal displacement; @p u is Cartesian, with
-    /// ghosts.
+    /// Return the largest nodal displacement; @p u is Cartesian, with ghosts.
     template <int dim>
     LargestPlace<dim>
     largest_displacement(const StressSpace<dim>  &stress_space,
@@ -18,7 +17,7 @@ namespace Viscoplastic
     {
       const AdmissibleSpace<dim> &space = stress_space.space;
       LargestPlace<dim>           result;
-      double                      square = 0.; // the largest, nearly
+      double                      square = 0.; // slightly below the largest
       for (std::size_t c = 0; c < space.cells.size(); ++c)
         {
           const auto &cell = space.cells[c];
@@ -46,7 +45,7 @@ namespace Viscoplastic
 
 
 
-    /// What rounding leaves of forces that vanish.
+    /// Return the size of rounding errors in a vanishing sum of forces.
     template <int dim>
     double
     force_of_rounding(const Discretization<dim> &d, const DistributedVector &u)
@@ -58,7 +57,7 @@ namespace Viscoplastic
              Utilities::MPI::sum(sum, d.space.communicator);
     }
 
-    /// energies_of_flow(), from forces unless samples have to tell. Collective.
+    /// Return energies_of_flow(), from forces where these suffice. Collective.
     template <int dim>
     FlowEnergies
     energies_of_step(const Discretization<dim> &d,
@@ -74,7 +73,7 @@ namespace Viscoplastic
       result.irreversible_energy = after.irreversible_energy;
       if (after.irreversible.size() > 0)
         {
-          // The driving strain E^-1 sigma is that of u and E^-1 z.
+          // The driving strain E^-1 sigma is eps(u) + E^-1 z.
           DistributedVector flow(after.irreversible);
           flow -= before.irreversible;
           result.viscous_dissipation = before.irreversible_energy -
@@ -98,7 +97,7 @@ namespace Viscoplastic
 
 
 
-    /// What foundations that give way store.
+    /// Return the energy stored in compliant foundations.
     template <int dim>
     double
     energy_of_foundation(const Discretization<dim> &d, const State<dim> &state)
@@ -114,11 +113,11 @@ namespace Viscoplastic
 
 
 
-    /// Forces may be nothing beside the nodal ones that cancel: of stresses
-    /// that balance each other, to the tolerance of the solve. And of a body
-    /// that is carried along without strain nothing but rounding remains, which
-    /// need not add up to zero: it counts as a defect of 1e-8 at most. Looked
-    /// for rarely, since it takes the whole matrix.
+    /// Set the scale of defects of balance. Forces may be negligible beside
+    /// nodal forces that cancel, of stresses in equilibrium up to the solver
+    /// tolerance. For a body that moves without strain only rounding remains,
+    /// which need not add up to zero: it counts as a defect of at most 1e-8.
+    /// Called only for large defects, since it needs the whole matrix.
     template <int dim>
     void
     set_force_scale(const Discretization<dim> &d,
@@ -215,8 +214,7 @@ namespace Viscoplastic
         result.largest_force =
           std::max(result.largest_force, stable_norm(force));
       }
-    // Radial forces on a ring need not add up to zero: hoop stresses do the
-    // rest.
+    // On a ring, hoop stresses balance radial forces.
     if (d.scene().is_axisymmetric())
       result.sum_of_forces[0] = 0.;
     if (stable_norm(result.sum_of_forces) > 1e-9 * result.largest_force)

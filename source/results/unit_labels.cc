@@ -8,7 +8,7 @@ namespace Viscoplastic
   Quantity
   quantity_of_field(const std::string &name)
   {
-    // What is not here has no unit.
+    // Fields that are not listed have no unit.
     static const std::map<std::string, Quantity> of_fields{
       {"displacement", Quantity::length},
       {"velocity", Quantity::velocity},
@@ -29,7 +29,7 @@ namespace Viscoplastic
       {"normal_traction", Quantity::stress},
       {"stress_vector", Quantity::stress},
       {"friction_work", Quantity::work_per_area}};
-    // The field itself, or a component.
+    // The name is that of a field or of a component.
     for (const std::string &field : {name, name.substr(0, name.rfind('_'))})
       if (const auto found = of_fields.find(field); found != of_fields.end())
         return found->second;
@@ -49,7 +49,7 @@ namespace Viscoplastic
       return Quantity::volume;
     if (quantity == Quantity::pure_number)
       return is_of_boundary ? Quantity::area : Quantity::volume;
-    return Quantity::pure_number; // which has no name of its own
+    return Quantity::pure_number; // without a label of its own
   }
 
 

@@ -21,11 +21,11 @@
 #include <utility>
 #include <vector>
 
-// What Output writes as VTU: the body, and faces of its boundary.
+// Data that Output writes as VTU: the body, and faces of its boundary.
 
 namespace Viscoplastic
 {
-  /// The name of an output without its ending.
+  /// The name of the files of an output without extension.
   inline std::string
   record_name(const std::string &series, const unsigned int n)
   {
@@ -34,26 +34,26 @@ namespace Viscoplastic
 
 
 
-  /// What is written of the body at one time, before it is copied.
+  /// The data of the body at one time, before they are copied.
   template <int dim>
   struct BodyData
   {
     using Cell = typename DoFHandler<dim>::active_cell_iterator;
 
     const AdmissibleSpace<dim> &space;
-    /// Those of the present stage that this rank owns.
+    /// The owned cells that are present in this stage.
     std::vector<Cell> cells;
-    /// Cartesian fields on `relevant`, with their names.
+    /// Cartesian fields on relevant dofs, with their names.
     std::vector<std::pair<std::string, const DistributedVector *>> vectors;
-    /// Values in the order of `cells`.
+    /// Cell means in the order of `cells`, with their names.
     std::vector<std::pair<std::string, std::vector<float>>> means;
   };
 
 
 
-  /// Files have single precision. What is beyond its range, and would be
-  /// infinite there, becomes its largest number: ParaView cannot scale colors
-  /// to infinite values. Returns whether this was needed.
+  /// Replace a value beyond the range of single precision, in which files are
+  /// written, by the largest number: ParaView cannot scale colors to infinite
+  /// values. Returns whether this was needed.
   template <typename Number>
   bool
   cut_off(Number &value)
@@ -78,7 +78,7 @@ namespace Viscoplastic
 
 
 
-  /// A vector field: its first and last component, its name.
+  /// First and last component of a vector field, its name and its kind.
   using VectorRange =
     std::tuple<unsigned int,
                unsigned int,
@@ -88,8 +88,8 @@ namespace Viscoplastic
 
 
   /// Patches with nodal data, in the form that DataOutInterface writes. They
-  /// refer to nothing else, so that a thread can write them while the run goes
-  /// on.
+  /// contain copies of all data, so that a thread can write them while the run
+  /// continues.
   template <int patch_dim, int dim>
   class PatchOutput : public DataOutInterface<patch_dim, dim>
   {
@@ -113,8 +113,8 @@ namespace Viscoplastic
       names.insert(names.end(), is_vector ? dim : 1, name);
     }
 
-    /// Cut off the values of all patches. Returns the data sets concerned by
-    /// their indices, and the number of data sets for the coordinates.
+    /// Cut off the values of all patches. Returns the indices of the affected
+    /// data sets, with the number of data sets standing for the coordinates.
     virtual std::set<unsigned int>
     cut_off_infinite()
     {
@@ -133,7 +133,7 @@ namespace Viscoplastic
       return result;
     }
 
-    /// The parts of a VTU file in turn, behind the last one nothing.
+    /// Return the n-th part of a VTU file; empty after the last one.
     virtual std::string
     vtu_part(const unsigned int n)
     {
@@ -143,7 +143,7 @@ namespace Viscoplastic
       return text.str();
     }
 
-    /// A patch for all fields.
+    /// Add a patch with room for all fields.
     DataOutBase::Patch<patch_dim, dim> &
     add_patch()
     {
@@ -177,10 +177,10 @@ namespace Viscoplastic
 
 
 
-  /// The body, a patch for each cell in the order of @p body, which a restart
-  /// does not change; with the units of @p scene in the names, where deal.II
-  /// allows none in those of data. Files are written field by field: all
-  /// patches would take more memory than the matrix.
+  /// The body, with a patch for each cell in the order of @p body, which a
+  /// restart does not change. Names of fields include units, since deal.II has
+  /// no place for units. Files are written field by field, since patches of all
+  /// fields would take more memory than the matrix.
   template <int dim>
   class BodyOutput : public PatchOutput<dim, dim>
   {
@@ -236,8 +236,8 @@ namespace Viscoplastic
       return result;
     }
 
-    /// One part for the mesh, one for each field and one for the end, as
-    /// deal.II writes them.
+    /// Part 0 has the mesh, the next ones have a field each, and the last one
+    /// has the end, in the format of deal.II.
     std::string
     vtu_part(const unsigned int n) override
     {
@@ -295,7 +295,7 @@ namespace Viscoplastic
       return text.str();
     }
 
-    /// Make the patches of all cells.
+    /// Make the patches of all cells, as revolved() needs them.
     void
     make_patches()
     {
@@ -320,7 +320,7 @@ namespace Viscoplastic
     static constexpr unsigned int n_vertices =
       GeometryInfo<dim>::vertices_per_cell;
 
-    /// Numbers, compressed, in an element with this type (and name).
+    /// Return an element of this type (and name) with compressed numbers.
     template <typename Number>
     static std::string
     data_array(const std::string &type, const std::vector<Number> &values)
@@ -336,7 +336,8 @@ namespace Viscoplastic
                   Z_BEST_SPEED);
       AssertThrow(status == Z_OK, ExcInternalError());
       bytes.resize(size);
-      // One block, its size, that of the last one, and the compressed one.
+      // Number of blocks, sizes of a block and of the last one, compressed
+      // size.
       const std::array<std::uint32_t, 4> sizes{{1,
                                                 std::uint32_t(n_bytes),
                                                 std::uint32_t(n_bytes),
@@ -348,7 +349,7 @@ namespace Viscoplastic
              Utilities::encode_base64(bytes) + "\n    </DataArray>\n";
     }
 
-    /// Those of value(node, component) at the vertices of cells.
+    /// Return an element with value(node, component) at the vertices of cells.
     template <typename Function>
     std::string
     three_components(const Function &value, const std::string &name = "") const
@@ -368,11 +369,11 @@ namespace Viscoplastic
 
 
 
-  /// What becomes of a plane section (x, y) = (r, z) that turns by @p degrees
-  /// about the y axis, towards those who look along -z: @p edges, each a patch
-  /// of @p section and the number of its face in cells of deal.II, sweep
-  /// surfaces, and where these do not close, the section itself is at both
-  /// ends. Vectors turn; components of tensors remain those of the section.
+  /// Return the surface of a plane section (x, y) = (r, z) that is rotated by
+  /// @p degrees about the y axis, towards viewers who look along -z. Each of
+  /// the @p edges, a patch of @p section and its face number in deal.II, sweeps
+  /// a surface; if these do not close, the section itself is at both ends.
+  /// Vectors are rotated; components of tensors remain those of the section.
   inline PatchOutput<2, 3>
   revolved(const PatchOutput<2, 2>                                 &section,
            const std::vector<std::pair<std::size_t, unsigned int>> &edges,
@@ -394,7 +395,7 @@ namespace Viscoplastic
                           is_vector(row) > 0 ? 2 : 1,
                           section.names[row]);
 
-    // Corners, by patch and vertex of the section and the angle.
+    // A corner: a vertex of the patch of the section, and the angle.
     using Corner   = std::pair<unsigned int, double>;
     const auto add = [&](const DataOutBase::Patch<2, 2> &from,
                          const std::array<Corner, 4>    &corners) {

@@ -123,7 +123,7 @@ namespace Viscoplastic
       }
     if (demand.choice == LinearSolver::direct)
       demand.choice = LinearSolver::automatic;
-    // Where more gain little they cost more than they are worth.
+    // Do not recommend ranks beyond those whose gain is worth their cost.
     constexpr double   worth  = 0.4;
     const unsigned int n_most = 4096;
     const unsigned int best =
@@ -174,7 +174,7 @@ namespace Viscoplastic
   void
   Announcer<dim>::warn_of_held_faces(const Discretization<dim> &discretization)
   {
-    // Faces of materials that are still to come have no points.
+    // Faces of materials that are added later have no contact points yet.
     if (!discretization.face ||
         discretization.scene().contact_changes_with_stages())
       return;

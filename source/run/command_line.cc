@@ -18,7 +18,8 @@ namespace Viscoplastic
 
   namespace
   {
-    /// A file that comes with the program as it can be named from here.
+    /// Return the path of a file that comes with the program, relative to the
+    /// working directory if it is inside of that.
     std::string
     source_path(const std::string &path)
     {
@@ -32,8 +33,8 @@ namespace Viscoplastic
     }
 
 
-    /// The options with the values that each may have behind `='; those of the
-    /// second list have any, which may also be the next argument.
+    /// Options with the values that may follow `=', and options that require a
+    /// value, which follows `=' or is the next argument.
     const std::map<std::string, std::vector<std::string>> flags{
       {"--help", {}},
       {"--version", {}},
@@ -91,8 +92,8 @@ namespace Viscoplastic
 
 
 
-    /// An option, of which @p value stands behind '=', unless that is null. @p
-    /// of_task is the one that has decided on the task, empty for none.
+    /// Read an option; @p value is the text after '=', or null. @p of_task is
+    /// the option that has set the task, empty if none has.
     void
     read_flag(const std::string &option,
               const std::string *value,
@@ -155,7 +156,7 @@ namespace Viscoplastic
 
 
 
-    /// What excludes each other.
+    /// Throw ExcMessage for options and files that exclude each other.
     void
     check(const CommandLine &line, const std::string &of_task)
     {

@@ -10,8 +10,8 @@ namespace Viscoplastic
 
 
 
-    /// What a pilot run has in the place of the scene's values; @p refinements:
-    /// of its mesh, beyond those of the scene.
+    /// Return the assignments of a pilot run, which override values of the
+    /// scene; @p refinements are added to those of the scene's mesh.
     std::vector<std::string>
     assignments(const Parameters &parameters, const unsigned int refinements)
     {
@@ -39,8 +39,8 @@ namespace Viscoplastic
 
 
 
-    /// Whether a quantity may be quite another on finer meshes, as the force of
-    /// a contact that closes on these alone.
+    /// Whether the quantity may differ much on finer meshes, as the force of
+    /// contact that closes only there.
     template <int dim>
     bool
     is_too_coarse(const RunSummary<dim> &run)
@@ -88,7 +88,7 @@ namespace Viscoplastic
         }
       catch (const std::exception &exception)
         {
-          // That of a finer mesh leaves what the coarser one has found.
+          // If a finer mesh fails, the result of the coarser one is used.
           if (expectation.size == 0.)
             expectation.failure = reason(exception);
         }
@@ -118,7 +118,7 @@ namespace Viscoplastic
                                                                console,
                                                                PilotRun());
         next->follow(*pass);
-        pass         = std::move(next); // which has let go of the directories
+        pass         = std::move(next); // which unlocks the directories
         interruption = pass->run(CommandLine::Restart::no);
       }
     return interruption;

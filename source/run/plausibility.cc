@@ -12,7 +12,7 @@ namespace Viscoplastic
 {
   namespace
   {
-    /// The least and the largest value of something.
+    /// The range of a set of numbers.
     struct ValueRange
     {
       double least   = std::numeric_limits<double>::infinity(),
@@ -25,7 +25,7 @@ namespace Viscoplastic
         largest = std::max(largest, value);
       }
 
-      /// Over all ranks. Collective.
+      /// Combine the ranges of all ranks. Collective.
       void
       join(const MPI_Comm communicator)
       {
@@ -52,8 +52,8 @@ namespace Viscoplastic
 
 
 
-    /// Moduli of the cells of one material, and of those in which its law flows
-    /// at a stress the times |sigma|/|G| and 2/r.
+    /// Ranges over the cells of one material: moduli, and, where its law flows
+    /// at a given stress, the times |sigma|/|G| and 2/r.
     template <int dim>
     struct MaterialRanges
     {
@@ -63,7 +63,7 @@ namespace Viscoplastic
 
 
 
-    /// Collective.
+    /// The ranges of all materials at a uniaxial @p stress. Collective.
     template <int dim>
     std::vector<MaterialRanges<dim>>
     ranges_of_materials(const Discretization<dim> &discretization,
@@ -80,7 +80,7 @@ namespace Viscoplastic
       const auto &cells = discretization.space.cells;
       for (std::size_t c = 0; c < cells.size(); ++c)
         {
-          // Also of what has yet to be added.
+          // Materials that are added later are included.
           const Material<dim> *material =
             &scene.lasting_material(cells[c]->material_id());
           auto &ranges =
@@ -127,7 +127,7 @@ namespace Viscoplastic
 
 
 
-    /// By how much two bodies overlap at first, at the nodes of a boundary.
+    /// Return the largest initial overlap of two bodies at nodes of a boundary.
     /// Collective.
     template <int dim>
     double
@@ -151,9 +151,9 @@ namespace Viscoplastic
 
 
 
-    /// Whether nothing balances the loads at time t: among the rigid motions
-    /// that contact alone can prevent, that along which they do most work takes
-    /// the body off all of its foundations. Collective.
+    /// Whether contact cannot balance the loads at time t: of the rigid motions
+    /// that only contact prevents, the combination on which the loads do most
+    /// work separates all contact points from their foundations. Collective.
     template <int dim>
     bool
     loads_pull_off(const Discretization<dim> &discretization, const double t)
@@ -162,7 +162,7 @@ namespace Viscoplastic
       for (const auto &condition : discretization.scene().boundary)
         if (condition.second.has_friction() &&
             !condition.second.has_computed_pressure())
-          return false; // friction without pressure
+          return false; // friction bounds without pressure hold the body
       const Load<dim>   load   = discretization.loads.assemble(t);
       DistributedVector motion = space.owned_vector();
       for (const DistributedVector &free : space.motions_held_by_contact())
@@ -181,7 +181,7 @@ namespace Viscoplastic
 
 
 
-    /// The largest of the values, or norms, of data at places and times.
+    /// Extrema of data at some places and at about 20 steps.
     template <int dim>
     class DataSampler
     {
@@ -197,7 +197,7 @@ namespace Viscoplastic
           times.push_back(scene.schedule.step(std::min(i, n)).t);
       }
 
-      /// The least of a datum and zero.
+      /// Return the least value of a datum, at most zero.
       double
       least(const Expression<dim> &datum) const
       {
@@ -208,7 +208,7 @@ namespace Viscoplastic
         return result;
       }
 
-      /// @p when: the first time of it.
+      /// Return the largest absolute value; @p when: set to its first time.
       double
       largest(const Expression<dim> &datum, double *const when = nullptr) const
       {
@@ -224,8 +224,8 @@ namespace Viscoplastic
         return result;
       }
 
-      /// The largest deviation from a value, or from that of t = 0 where there
-      /// is none.
+      /// Return the largest deviation from a value, or from the value at t = 0
+      /// if there is no such value.
       double
       largest_deviation(const Expression<dim>       &datum,
                         const std::optional<double> &from) const
@@ -321,7 +321,7 @@ namespace Viscoplastic
             add(here.largest(condition.friction_data[i]),
                 "the friction bound" + where,
                 false);
-        // A foundation that withdraws from what may leave it loads nothing.
+        // If contact may open, only displacements towards the body load it.
         const auto &foundation   = condition.foundation_displacement;
         double      displacement = !foundation ? 0. :
                                    condition.is_unilateral() ?
@@ -330,7 +330,7 @@ namespace Viscoplastic
         for (const auto &component : condition.displacement)
           if (component)
             displacement = std::max(displacement, here.largest(*component));
-        // Stiff parts move with it.
+        // The softest material takes the strain; stiff parts move rigidly.
         add(modulus.least * displacement / size,
             "Young's modulus times the displacement" + where +
               " over the size of the body",
@@ -383,7 +383,7 @@ namespace Viscoplastic
                   << time_unit;
             else
               out << "does not flow";
-            // That of the initial state knows nothing of it.
+            // The limit of the initial state does not include this material.
             if (std::isfinite(material->added_at) && limit.largest > 0.)
               out << "; stability limit 2/r there, once it is added: "
                   << limit.text() << time_unit;
@@ -396,7 +396,7 @@ namespace Viscoplastic
 
   namespace
   {
-    /// Add sentences on moduli and times that no known material has.
+    /// Add sentences on implausible moduli, times and strains.
     template <int dim>
     void
     add_implausible_in_si(const Scene<dim>                       &scene,
@@ -413,7 +413,7 @@ namespace Viscoplastic
       };
       for (const auto &[material, modulus, ratio, time, limit] : ranges)
         {
-          // From soft gels to diamond, which has 1.2e12 Pa.
+          // The range is from soft gels to diamond, which has 1.2e12 Pa.
           constexpr double least = 1e3, largest = 1.3e12;
           const double     unit = units.stress.si;
           if (modulus.least * unit < least || modulus.largest * unit > largest)
@@ -426,7 +426,7 @@ namespace Viscoplastic
                 "); known materials have 1e4 Pa (gels), 1e6 Pa (rubber), 1e10 Pa "
                 "(rock), 2e11 Pa (steel), up to 1.2e12 Pa (diamond).");
             }
-          // Nobody waits so long for a law to do what it does at once.
+          // A relaxation so much shorter than the run suggests wrong units.
           constexpr double at_once = 1e-9;
           const double     end     = scene.schedule.end_time();
           if (time.largest > 0. && time.largest < at_once * end)

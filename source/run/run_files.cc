@@ -9,7 +9,7 @@ namespace Viscoplastic
 {
   namespace
   {
-    /// The memory of all ranks together in MB, now and at the most.
+    /// Return the present and the peak memory of all ranks together in MB.
     std::pair<double, double>
     memory_of_ranks(const MPI_Comm communicator)
     {
@@ -108,7 +108,7 @@ namespace Viscoplastic
     const CheckpointStore::Removal removal = checkpoints.remove_all();
     for (const std::string &remark : removal.remarks)
       console.remark(remark);
-    // Those of an earlier pass of this run need no words.
+    // Checkpoints of an earlier pass of this run are removed silently.
     if (removal.n_checkpoints > 0 && !run.pass.follows_another)
       console.remark("Note: the checkpoints of an earlier run in '" +
                      checkpoints.directory + "' have been removed.");
@@ -150,7 +150,7 @@ namespace Viscoplastic
     output.emplace(run.scene, communicator);
     output->resume(output_times);
     lines.resume(directory(), n);
-    // A run without checkpoints of its own keeps those that there are.
+    // A run without regular checkpoints keeps the existing ones.
     const unsigned int n_kept = schedule.is_regular() ?
                                   parameters.checkpoint.keep :
                                   std::numeric_limits<unsigned int>::max();
@@ -194,7 +194,7 @@ namespace Viscoplastic
     const bool        is_last = state.t >= run.scene.schedule.end_time();
     auto              decision =
       schedule.after_step(state.n, is_last, run.recorder.elapsed());
-    // Steps are the same on all ranks; the clock of one rank counts.
+    // Clocks of ranks differ: the decision of rank 0 counts.
     if (Utilities::MPI::this_mpi_process(communicator) != 0)
       decision = {};
     const SignalRequests::Request request =
@@ -212,7 +212,7 @@ namespace Viscoplastic
       run.scene.unit(Quantity::time) + "): '" + checkpoints.path(state.n) + "'";
     if (!stops)
       {
-        // Regular ones need no words.
+        // Regular checkpoints are not announced.
         if (!decision.is_due)
           console.stream() << "Checkpoint of " << text << std::endl;
         return "";
@@ -240,19 +240,19 @@ namespace Viscoplastic
     const TimeStepper<dim>                          &time_stepper)
   {
     TimerOutput::Scope phase(timer, "checkpoint");
-    output->finish(); // it names the outputs
+    output->finish(); // the checkpoint names the outputs
     const PackedRun packed = pack_run(run,
                                       triangulation,
                                       *discretization,
                                       time_stepper,
                                       output->output_times());
-    // Whose rows the checkpoint relies on.
+    // The checkpoint relies on the rows written so far.
     if (Utilities::MPI::this_mpi_process(communicator) == 0)
       {
         run.recorder.synchronize();
         lines.synchronize();
       }
-    checkpoints.make_directory(); // unless the scene has asked for checkpoints
+    checkpoints.make_directory(); // missing unless checkpoints are regular
     lock();
     for (const std::string &remark : checkpoints.write(
            packed.manifest, packed.files, parameters.checkpoint.keep))

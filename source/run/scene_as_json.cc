@@ -22,7 +22,7 @@ namespace Viscoplastic
 
 
 
-    /// Entries of boundaries that may change over space and time.
+    /// Entries of boundaries that may depend on position and time.
     const std::vector<std::string> boundary_data{"Gap",
                                                  "Foundation motion",
                                                  "Foundation displacement",
@@ -47,7 +47,7 @@ namespace Viscoplastic
 
 
 
-    /// A checksum of all meshes, libraries and tables that the scene reads.
+    /// Return a checksum of mesh, libraries and tables that the scene reads.
     unsigned int
     checksum_of_files(const Parameters &scene)
     {
@@ -87,7 +87,7 @@ namespace Viscoplastic
 
 
 
-    /// Young's modulus and Poisson's ratio of the isotropic stiffness that is
+    /// Return Young's modulus and Poisson's ratio of the isotropic stiffness
     /// nearest to that of a material.
     Json
     isotropic_moduli(const Parameters         &scene,
@@ -158,8 +158,8 @@ namespace Viscoplastic
               path == section + "/Young's modulus" ||
               path == section + "/Poisson's ratio" ||
               path == section + "/Thermal expansion" ||
-              // The strain rate of a parsed law is a function of other things,
-              // as are parameters of a temperature.
+              // The strain rate of a parsed law, and parameters that depend on
+              // T, are not functions of x and t alone.
               (!mentions(entry.second, "T") &&
                path.compare(0, of_law.size(), of_law) == 0 &&
                path != of_law + "Strain rate"))
@@ -183,7 +183,7 @@ namespace Viscoplastic
               json["means"][path]["over_time"] = *in_time;
           }
         catch (const ExpressionError &)
-          {} // choices of laws in shared libraries; a run refuses others
+          {} // entries that are no expressions, such as choices
       }
 
       const Parameters                        &scene;
@@ -198,7 +198,7 @@ namespace Viscoplastic
   Stiffness
   nearest_isotropic(const Stiffness &stiffness)
   {
-    // Voigt's averages are the coefficients of the projection.
+    // The Voigt averages are the coefficients of the projection.
     const double mu = stiffness.shear_modulus(),
                  nu = stiffness.poissons_ratio();
     return Stiffness::isotropic(2. * (1. + nu) * mu, nu);

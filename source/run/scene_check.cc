@@ -25,7 +25,7 @@ namespace Viscoplastic
       Announcer<dim>                                  *announcer)
     {
       control.land_on(scene.stage_ends, {});
-      // Given steps need them for their error alone.
+      // Steps of given size use kinks only for the estimate of their error.
       if (!scene.parameters.step_control.land_on_kinks ||
           !(control.is_on || scene.parameters.error_control.error_estimator))
         return;
@@ -42,9 +42,8 @@ namespace Viscoplastic
 
 
 
-    /// What can be said of the limit where check_steps() says nothing: where
-    /// the initial state has no stress, or has yet to be brought into
-    /// equilibrium.
+    /// Print the stability limit in cases without output of check_steps(): if
+    /// the initial state is free of stress, or not yet in equilibrium.
     template <int dim>
     void
     announce_stability_limit(const Discretization<dim> &discretization,
@@ -74,8 +73,8 @@ namespace Viscoplastic
     }
 
 
-    /// Evaluate the data of later times: at the ends of phases, and a hundred
-    /// times in between; where steps are fewer, at their ends among these.
+    /// Evaluate the data at later times: at ends of phases and about a hundred
+    /// times between them, which include the ends of steps if there are fewer.
     template <int dim>
     void
     check_later_data(const Discretization<dim> &discretization)
@@ -98,7 +97,7 @@ namespace Viscoplastic
               discretization.laws.check(t);
               if (discretization.face)
                 {
-                  // Coefficients of friction without their pressures.
+                  // Only friction coefficients: the state has no pressures.
                   std::vector<double> bounds = discretization.face->bounds(t);
                   discretization.face->add_computed_bounds(t,
                                                            ContactState(),
@@ -112,8 +111,8 @@ namespace Viscoplastic
 
 
 
-    /// Solver, steps and what memory a run needs beyond what this process has
-    /// now. Collective.
+    /// Print solver, number of steps and the expected memory of a run, which
+    /// includes that of this process. Collective.
     template <int dim>
     void
     print_size(const Discretization<dim> &discretization, std::ostream &out)
@@ -133,12 +132,12 @@ namespace Viscoplastic
                             dof_handler.get_communicator()) +
         expected_memory(solver, demand) +
         (scene.is_implicit() || scene.is_implicit_beyond_the_limit() ?
-           // A second matrix, and two tensors of rank 4 a sample.
+           // A second matrix, and two rank-4 tensors per sample.
            dof_handler.n_dofs() * matrix_bytes(dim) +
              2. * sizeof(SymmetricTensor<4, 3>) *
                discretization.stress_space.n_samples * n_cells :
            0.) +
-        // Fields that are written while the run goes on, in single precision.
+        // Copies of fields in single precision, written during the run.
         (n_ranks == 1 ? n_cells * GeometryInfo<dim>::vertices_per_cell * 140. :
                         0.);
       out << "Linear solver: "
@@ -208,7 +207,7 @@ namespace Viscoplastic
                               discretization.face.get(),
                               initial.u,
                               initial.contact);
-    // Data that a solution makes are compatible up to quadrature.
+    // Manufactured data are in equilibrium up to quadrature errors.
     const auto &solution = discretization.scene().exact_solution;
     if (solution && solution->makes_data)
       return;
@@ -291,7 +290,7 @@ namespace Viscoplastic
     const Discretization<dim> d(dof_handler, scene);
     announcer.announce(d);
     announcer.warn_of_held_faces(d);
-    // Points, lines and integrals have to be in the body.
+    // This throws if output points, lines or integrals are wrong.
     Recorder<dim>(scene, control, console, timer, budget ? &*budget : nullptr)
       .set_mesh(d);
     const LargestStress largest_stress = largest_given_stress(d);
@@ -302,7 +301,7 @@ namespace Viscoplastic
     KnownSolution<dim>(scene, timer).check();
     if (scene.exact_solution && scene.exact_solution->makes_data)
       check_exact_solution(d.space);
-    // The initial data, and where they need no solution, the first step.
+    // Check the initial data, and the first step if these need no solution.
     const bool          equilibrate = parameters.initial_state.equilibrate;
     EvaluatedState<dim> initial;
     initial.state = make_initial_state(d.stress_space, equilibrate);

@@ -20,8 +20,8 @@ namespace Viscoplastic
 {
   namespace
   {
-    /// Apply a function to the components of a text; nothing if it returns
-    /// nothing for all of them.
+    /// Apply a function to the components of a text; return nothing if the
+    /// function returns nothing for all components.
     std::optional<std::string>
     by_component(
       const std::string &components,
@@ -70,7 +70,7 @@ namespace Viscoplastic
         for (unsigned int n = 1; n <= schedule.n_steps(); ++n)
           {
             const TimeStep step = schedule.step(n);
-            // Steps that the run chooses may be shorter than these.
+            // Steps of controlled size may be shorter than given ones.
             const unsigned int n_parts = chooses_steps ? 8 : 1;
             for (unsigned int i = 1; i < n_parts; ++i)
               times.push_back(step.t_old + step.k * i / n_parts);
@@ -223,7 +223,7 @@ namespace Viscoplastic
           });
       }
 
-      /// Gauss' two points in an interval, with their weights.
+      /// Return the two Gauss points of an interval with their weights.
       static std::vector<std::pair<double, double>>
       gauss(const double begin, const double end)
       {
@@ -232,7 +232,7 @@ namespace Viscoplastic
                 {begin + (0.5 + shift) * k, 0.5 * k}};
       }
 
-      /// The sum of the text with times in the place of t.
+      /// Return the quadrature in time of an expression, with numbers for t.
       std::string
       time_mean_of_text(const std::string &text) const
       {
@@ -262,7 +262,7 @@ namespace Viscoplastic
       parallel::distributed::Triangulation<dim> triangulation;
       const FE_Nothing<dim>                     fe;
       const Mapping<dim>                       &mapping;
-      /// The ends of steps, with 0.
+      /// Zero and the ends of steps.
       std::vector<double> times;
     };
   } // namespace
@@ -298,8 +298,8 @@ namespace Viscoplastic
       largest = std::max(largest, std::abs(value));
     const double tolerance = 1e-9 * largest;
 
-    // As a sum of ramps. What is left out is followed, so that it cannot pile
-    // up: the slope after a new node leads from the sum so far to the value.
+    // A sum of ramps. The slope after a new node leads from the sum so far to
+    // the next value, so that errors of points left out do not accumulate.
     std::string text = exact(values.front());
     double      node = times.front(), at_node = values.front(), slope = 0.;
     for (std::size_t i = 1; i < times.size(); ++i)

@@ -36,8 +36,8 @@ namespace Viscoplastic
 
   namespace
   {
-    /// The state without what the temperature gives on any mesh; nothing where
-    /// that is the state itself. Collective.
+    /// Return the state with the thermal stress removed from z, since any mesh
+    /// can evaluate that anew; nothing if there is none. Collective.
     template <int dim>
     std::optional<State<dim>>
     without_thermal_stress(const FlowLaws<dim> &laws, const State<dim> &state)
@@ -95,10 +95,10 @@ namespace Viscoplastic
       state.initial_u.size() > 0;
     if (keeps_displacement)
       state.initial_u -= state.u;
-    // u, which has been interpolated, follows a history that has new slopes;
-    // what it cannot follow becomes z, which moves u again, since equilibrium
-    // keeps the volume. What equilibrium wants of strains on a finer mesh comes
-    // back in each round, so that rounds end once there is little else.
+    // The interpolated u does not fit the history with its new slopes. Each
+    // round adds a share of the mismatch of E eps(u) + z = sigma to z, and
+    // equilibrium, which keeps the volume, moves u again. Strains of a finer
+    // mesh recur in each round, so that rounds end once little else is left.
     bool is_settled = !scene.has_viscosity() || scene.keeps_history_at_points();
     if (is_settled)
       time_stepper.settle(accepted);
@@ -119,7 +119,7 @@ namespace Viscoplastic
         time_stepper.settle(accepted);
         is_settled = true;
       }
-    // What a finer mesh finds of the initial state is no displacement since.
+    // What restoring equilibrium changes is part of the initial displacement.
     if (keeps_displacement)
       state.initial_u += state.u;
     this->complete(discretization, loss, result.of_refined_cells, accepted);
@@ -136,7 +136,7 @@ namespace Viscoplastic
     for (const auto &cell : discretization.space.cells)
       was_present.push_back(
         discretization.scene().is_present(cell->material_id()));
-    // Also of other ranks' cells, which are at nodes of this one.
+    // Ghost cells are included, since they share nodes with owned ones.
     for (const auto &cell :
          discretization.space.dof_handler.active_cell_iterators())
       if (!cell->is_artificial() &&
@@ -148,8 +148,8 @@ namespace Viscoplastic
 
   namespace
   {
-    /// Let what comes rest on what it touches: the force will show whether it
-    /// does.
+    /// Let new points without a gap begin in contact; the active set opens them
+    /// if their force is tensile.
     template <int dim>
     void
     hold_new_points(const Discretization<dim>          &discretization,
@@ -185,7 +185,8 @@ namespace Viscoplastic
   {
     const AdmissibleSpace<dim> &space = discretization.space;
     State<dim>                 &state = accepted.state;
-    // What lies opposite to a node may be another rank's in one stage alone.
+    // The dofs coupled to a node on the primary side, thus ghosts, depend on
+    // the stage.
     for (DistributedVector *const field : {&state.u,
                                            &state.velocity,
                                            &state.initial_u,
@@ -214,7 +215,7 @@ namespace Viscoplastic
     time_stepper.settle(accepted);
     this->complete(discretization, 0., 0., accepted);
     time_stepper.estimate(accepted);
-    // The loads that are left do work; those on what is gone do not.
+    // Only loads that remain do work; those on removed parts do not.
     this->energies.of_loads = old_u * accepted.forces.load.values;
   }
 

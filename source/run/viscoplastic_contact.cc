@@ -186,7 +186,7 @@ namespace Viscoplastic
                      std::to_string(parameters.geometry.global_refinements +
                                     expectation.refinements) +
                      '.');
-    // A scene that is wrong has been refused by now.
+    // Wrong scenes, which make pilot runs fail as well, have been refused.
     if (!expectation.failure.empty())
       console.remark("Note: the run on the first mesh that tells how large the "
                      "solution becomes has failed, so that errors will be "
@@ -202,7 +202,7 @@ namespace Viscoplastic
   {
     begin_state();
     files->begin();
-    // Another mesh may begin anew.
+    // If the first step refines its mesh, the initial state is made anew.
     if (mesh_controller.repeats_steps())
       recorder.stop_clock();
     else
@@ -237,12 +237,12 @@ namespace Viscoplastic
     has_recorded_initial_state = true;
     AcceptedStep<dim> initial;
     initial.time_step = {0, 0., 0., 0.};
-    // First: the seconds that steps are expected to take begin with the record.
+    // Write first: expected times of steps are measured from the record on.
     if (files)
       files->write(initial.time_step);
     initial.report = initial_report;
-    // What the first step begins with has no such estimate; without a copy of
-    // all fields.
+    // Only the record has the estimate of the quantity in the initial state.
+    // The state is moved, since a copy has all fields.
     const ErrorEstimate errors         = accepted.errors;
     const SpaceEstimate space_estimate = accepted.space_estimate;
     initial.end                        = std::move(accepted);
@@ -261,12 +261,12 @@ namespace Viscoplastic
   void
   ViscoplasticContact<dim>::set_up()
   {
-    // Later ones are part of the adaptation.
+    // Later set-ups are timed as part of the adaptation.
     std::optional<TimerOutput::Scope> scope;
     if (!discretization)
       scope.emplace(timer, "set-up");
     distribute_nodes(fe, dof_handler);
-    // The old one goes first: matrices and factors are what fills memory.
+    // Free the old matrix and factors, which use most memory, first.
     accepted.is_solution = false;
     time_stepper.reset();
     discretization.reset();
@@ -276,7 +276,7 @@ namespace Viscoplastic
                                                       error_estimator.get(),
                                                       control,
                                                       timer);
-    if (accepted.forces.u.size() == 0) // the first time
+    if (accepted.forces.u.size() == 0) // only once
       announcer.announce(*discretization);
     announcer.warn_of_held_faces(*discretization);
     announcer.announce_solver(time_stepper->method().solver_name());
@@ -369,7 +369,7 @@ namespace Viscoplastic
         mesh_controller.accept_step();
         return false;
       }
-    // What the first mesh has made of the initial data would stay.
+    // Initial data projected to a coarse mesh would keep its errors.
     if (accepted.state.n == 0)
       begin_on_finer_mesh();
     else
@@ -461,10 +461,10 @@ namespace Viscoplastic
     const State<dim>      &state       = accepted.state;
     const bool             is_solution = accepted.is_solution;
     scene.enter_stage(scene.stage_of_step_to(state.t));
-    set_up(); // which knows of no solution
+    set_up(); // resets is_solution
     const Discretization<dim> &d = *discretization;
     time_stepper->restore(accepted, archive.read_fields(d));
-    // Of these data: with others nothing may stay as it is.
+    // With changed data, the restored state does not solve its step.
     accepted.is_solution = is_solution && !archive.changes.of_data;
     accepted.forces      = evaluate_forces(d.stress_space,
                                       d.matrix,

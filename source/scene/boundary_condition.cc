@@ -14,8 +14,8 @@ namespace Viscoplastic
 
 
 
-    /// Throws unless the entry is there. The first of the choices stands for
-    /// nothing.
+    /// Throws ExcMessage listing @p choices, separated by |, unless the entry
+    /// is given. The first choice, which means `not given', is not listed.
     void
     require_given(const types::boundary_id id,
                   const std::string       &name,
@@ -32,7 +32,8 @@ namespace Viscoplastic
 
 
 
-    /// The contact law that is given, or that of the friction law in the paper.
+    /// The given contact law; by default the one that the paper combines with
+    /// the friction law: given normal stress for Coulomb's, else bilateral.
     const ContactLaw *
     contact_law_of(const types::boundary_id id, const BoundaryParameters &given)
     {
@@ -63,7 +64,7 @@ namespace Viscoplastic
 
 
 
-    /// The unit vector of a list of components.
+    /// Return the unit vector in the direction of a list of components.
     template <int dim>
     Tensor<1, dim>
     given_direction(const std::string &text, const std::string &entry)
@@ -104,8 +105,8 @@ namespace Viscoplastic
 
 
 
-    /// The components that the exact solution gives: all, or those that are not
-    /// `free'.
+    /// Return the components that the exact solution prescribes: all, or those
+    /// that are not `free'.
     template <int dim>
     std::array<std::optional<Expression<dim>>, dim>
     derived_components(const std::string        &text,
@@ -140,7 +141,7 @@ namespace Viscoplastic
 
 
 
-    /// Whether the entry @p name means something for the role and the laws.
+    /// Whether the entry @p name has an effect with this role and these laws.
     template <int dim>
     bool
     uses(const BoundaryCondition<dim> &condition, const std::string &name)
@@ -180,9 +181,9 @@ namespace Viscoplastic
 
 
 
-    /// Reads entries of a condition whose role and laws are known. What is not
-    /// used is parsed all the same: nonsense should not wait for the day when
-    /// the role changes.
+    /// Reads the entries of a condition whose role and laws are known. Unused
+    /// entries are parsed as well, so that errors in them are found before the
+    /// role changes.
     template <int dim>
     struct EntryReader
     {
@@ -382,7 +383,7 @@ namespace Viscoplastic
                           parameters.foundation_displacement);
     foundation_motion =
       read.vector("Foundation motion", parameters.foundation_motion);
-    // Only its change counts.
+    // Slip is caused only by changes of the foundation motion in time.
     if (foundation_motion && !foundation_motion->depends_on_time())
       foundation_motion.reset();
   }

@@ -2,13 +2,13 @@
 #include <viscoplastic_contact/base/messages.h>
 #include <viscoplastic_contact/scene/boundary_condition.h>
 
-// The data of a boundary condition at places and times.
+// Values of the data of a boundary condition.
 
 namespace Viscoplastic
 {
   namespace
   {
-    /// The value of a datum at a slip rate, or a place (and time).
+    /// The value at x (a slip rate if dim is 1). Throws where it is negative.
     template <int dim>
     double
     not_negative(const Expression<dim>       &datum,

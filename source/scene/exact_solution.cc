@@ -8,12 +8,12 @@ namespace Viscoplastic
 {
   namespace
   {
-    // Truncation and rounding of second differences are both 1e-8 then.
+    // Truncation and rounding errors of second derivatives are then both 1e-8.
     constexpr double relative_step = 1e-4;
 
 
 
-    /// The derivative of @p f at t from one side, of second order.
+    /// The one-sided derivative of @p f at t by differences of second order.
     template <typename Side, typename Function>
     auto
     one_sided_rate(const double    t,
@@ -165,7 +165,7 @@ namespace Viscoplastic
       }
     if (plane_model == PlaneModel::axisymmetric)
       {
-        // The rest of the divergence, (sigma_rr - sigma_tt)/r and sigma_rz/r.
+        // The rest of the divergence in cylindrical coordinates (2: theta).
         const double                r     = std::max(x[0], space_step);
         const SymmetricTensor<2, 3> sigma = stress(x, t);
         result[0] -= (sigma[0][0] - sigma[2][2]) / r;
@@ -220,14 +220,14 @@ namespace Viscoplastic
   ExactSolution<dim>::check_rates(const Point<dim> &x, const double t) const
   {
     const auto refuse_growth = [&](const std::string &name, const auto &f) {
-      // Towards a vertical tangent, as of sqrt(t), differences grow with
-      // smaller steps; those of a smooth function converge.
+      // Difference quotients converge for smooth functions, but grow with
+      // smaller steps at a vertical tangent, as that of sqrt(t).
       const auto difference = [&](const double step) {
         return ((f(t + step) - f(t)) / step).norm();
       };
       const double coarse = difference(16. * time_step),
                    fine   = difference(time_step);
-      // By 2 for a square root; by 16^0.1 for t^0.9.
+      // By a factor of 4 for t^0.5; by 16^0.1 = 1.3 for t^0.9.
       AssertThrow(
         !(fine > 1.3 * coarse && difference(time_step / 16.) > 1.3 * fine),
         ExcMessage("'Exact solution/" + name +

@@ -8,14 +8,14 @@ namespace Viscoplastic
 {
   namespace
   {
-    /// Of the largest values; changes by less than this part are small.
+    /// Changes of less than this part of the largest values are negligible.
     constexpr double smallest_share = 0.05;
-    /// Values have to leave those at both ends of a step by this part of their
-    /// range in the run to be called unseen. A sine goes that far with
-    /// about two steps a period, not with three.
+    /// A change is unseen if values leave the range between both ends of a step
+    /// by more than this part of their range in the run. A sine does so with
+    /// about two steps per period, but not with three.
     constexpr double unseen_share = 0.4;
-    /// Steps that are looked into, or one a phase, and where, as shares
-    /// of a step: not evenly, since what steps miss repeats with them.
+    /// The number of sampled steps, and the sample times in shares of a step:
+    /// not equidistant, since changes that steps miss may repeat with them.
     constexpr unsigned int          n_steps_sampled = 200;
     constexpr std::array<double, 6> inside{
       {0.081, 0.233, 0.397, 0.514, 0.709, 0.887}};
@@ -25,7 +25,7 @@ namespace Viscoplastic
       double start, end;
     };
 
-    /// Some steps of all phases.
+    /// Return some steps of each phase, its last one included.
     std::vector<StepEnds>
     sample_steps(const TimeSchedule &schedule)
     {
@@ -95,7 +95,7 @@ namespace Viscoplastic
                       std::minmax(at_start[i], at_end[i]);
                     beyond += std::max({0., values[i] - high, low - values[i]});
                   }
-                if (beyond > (1. + 1e-6) * largest) // the first of equals
+                if (beyond > (1. + 1e-6) * largest) // keep the first of equals
                   {
                     largest = beyond;
                     time    = t;
@@ -105,7 +105,7 @@ namespace Viscoplastic
       }
     catch (const ExceptionBase &)
       {
-        return {}; // no value at a time that no step has
+        return {}; // undefined at a time where perhaps no step ends
       }
     double range = 0.;
     for (std::size_t i = 0; i < least.size(); ++i)
@@ -119,7 +119,7 @@ namespace Viscoplastic
 
   namespace
   {
-    /// Whether a foundation slides at the end of any step.
+    /// Whether a foundation slides at the end of a sampled step.
     template <int dim>
     bool
     slides(const BoundaryCondition<dim>  &condition,
@@ -136,14 +136,14 @@ namespace Viscoplastic
                 const auto  &w = *condition.foundation_motion;
                 const double size =
                   (w.vector(x, step.end) - w.vector(x, 0.)).norm();
-                // The normal is known up to rounding.
+                // The tolerance allows for rounding of the normal.
                 if (condition.sliding(x, step.end).norm() > 1e-10 * size)
                   return true;
               }
         }
       catch (const ExceptionBase &)
         {
-          return true; // no value at a place that perhaps no node has
+          return true; // undefined at a place where perhaps no node is
         }
       return false;
     }
@@ -166,7 +166,7 @@ namespace Viscoplastic
   warnings_of_data_in_time(const Scene<dim>         &scene,
                            const Triangulation<dim> &triangulation)
   {
-    // Components have the same entry.
+    // Components of a vector share an entry, which is listed once.
     struct Finding
     {
       std::set<std::string> entries;
@@ -182,8 +182,8 @@ namespace Viscoplastic
       }
     };
     Finding jumps, unseen;
-    // Not where the error chooses the steps, nor where data follow from a
-    // solution, whose steps are a matter of its test.
+    // Steps are not checked where error control chooses them, nor where data
+    // follow from a manufactured solution, whose test chooses them.
     const bool looks_into_steps =
       !chooses_steps(scene.parameters) &&
       !(scene.exact_solution && scene.exact_solution->makes_data);
@@ -218,7 +218,7 @@ namespace Viscoplastic
             "foundation in normal direction.");
       }
 
-    // (2.10) excludes them.
+    // The assumption (2.10) excludes jumps in time.
     if (!jumps.list.empty())
       warnings.push_back(
         "Data jump in time (" + jumps.list +

@@ -9,31 +9,30 @@ namespace Viscoplastic
 {
   namespace
   {
-    /// Windows in which kinks are looked for, in all and in a phase.
+    /// The number of search windows per run, and the least number per phase.
     constexpr unsigned int n_windows = 400, least_windows = 40;
-    /// A kink or jump is known to this part of the end time; nearer ones are
-    /// the same.
+    /// Kinks and jumps are located up to this part of the end time.
     constexpr double accuracy = 1e-10;
-    /// A change of the slope is compared with the mean size of the slope, a
-    /// jump with the sum of all changes.
+    /// The least change of slope at a kink, relative to the mean size of the
+    /// slope, and the least jump, relative to the sum of all changes.
     constexpr double least_share = 0.05;
-    /// In a window of an eighth of the width, second differences are at least
-    /// 3/32 times as large if there is a kink, 1/64 times if the datum is
-    /// smooth: halves of a window begin at its eighths.
+    /// After three halvings of a window, second differences are at least 3/32
+    /// times as large at a kink (there are windows with it well inside, as they
+    /// begin at eighths), but 1/64 times where the datum is smooth.
     constexpr double       least_fall       = 0.04;
     constexpr unsigned int n_levels_to_tell = 3;
-    /// In one of half the width 3/8 and 1/4: most windows need no other.
+    /// After one halving the ratios are 3/8 and 1/4: most windows end there.
     constexpr double least_first_fall = 0.28;
-    /// They also begin an eighth before and after: rounding may put a jump at
-    /// the end of a window outside of it. Their ends and middles are at
-    /// eighths.
+    /// Candidates begin up to an eighth before the window and end up to an
+    /// eighth after it, since rounding may put a jump at its end outside. Their
+    /// ends and middles are at eighths.
     constexpr int n_eighths = 11, first_eighth = -1;
-    /// More than that are no kinks but noise.
+    /// A larger number of kinks is taken for noise.
     constexpr std::size_t most_kinks = 1000;
 
 
 
-    /// A kink is one of at least this part of the places where a datum changes.
+    /// The least share of the places at which a datum changes that have a kink.
     constexpr double least_places = 0.1;
 
 
@@ -71,7 +70,7 @@ namespace Viscoplastic
           }
         for (const double path : paths)
           n_moving += path > 0.;
-        // Each kink is well inside of one of them.
+        // Windows overlap by half: each kink is well inside of one.
         for (std::size_t i = 0; n_moving > 0 && i + 2 < times.size(); ++i)
           look_into(times[i], times[i + 2]);
       }
@@ -79,8 +78,8 @@ namespace Viscoplastic
       std::vector<Kink> kinks;
 
     private:
-      /// Windows on both sides of each row of the tables that the datum calls,
-      /// unless it is inside of one already: next to one of @p times.
+      /// Add rows of the datum's tables as ends of windows, unless they are
+      /// next to one of @p times and thereby well inside of a window.
       void
       add_rows_of_tables(std::vector<double> &times) const
       {
@@ -102,7 +101,7 @@ namespace Viscoplastic
         return values_at(datum, places, t);
       }
 
-      /// Whether something holds at enough of the places.
+      /// Whether a predicate holds at enough of the places.
       template <typename Predicate>
       bool
       is_common(const Predicate &holds_at) const
@@ -113,7 +112,7 @@ namespace Viscoplastic
         return n > 0 && n >= least_places * n_moving;
       }
 
-      /// The second differences of values at three times, by place.
+      /// Return the absolute second differences at three times, by place.
       static std::vector<double>
       second_differences(std::vector<double>        left,
                          const std::vector<double> &middle,
@@ -130,7 +129,7 @@ namespace Viscoplastic
         return std::accumulate(differences.begin(), differences.end(), 0.);
       }
 
-      /// Follow the largest second differences to where a kink is, if any.
+      /// Halve a window towards its largest second differences to find a kink.
       void
       look_into(double start, const double end)
       {
@@ -143,12 +142,12 @@ namespace Viscoplastic
         const double path    = sum(paths);
         for (unsigned int level = 1; width > accuracy * end_time; ++level)
           {
-            // What would be none if all of it were at one time.
+            // Stop where second differences are negligible against any kink.
             if (!(sum(differences) >
                   1e-6 * least_share * path * width / end_time))
               return;
             std::array<double, n_eighths>              t;
-            std::array<std::vector<double>, n_eighths> at; // within the run
+            std::array<std::vector<double>, n_eighths> at; // empty outside run
             for (int i = 0; i < n_eighths; ++i)
               {
                 t[i] = start + (i + first_eighth) * width / 8.;
@@ -184,7 +183,7 @@ namespace Viscoplastic
         judge(start + 0.5 * width);
       }
 
-      /// Add what is near a time, by the differences at some distance.
+      /// Add a kink or jump at @p t if values at some distance differ enough.
       void
       judge(const double t)
       {
@@ -208,7 +207,7 @@ namespace Viscoplastic
           kinks.push_back({without_rounding(t), is_jump});
       }
 
-      /// Kinks are where phases end, and at short numbers.
+      /// Return the end of a phase or the short decimal number at @p t, if any.
       double
       without_rounding(const double t) const
       {
@@ -230,7 +229,7 @@ namespace Viscoplastic
       const std::vector<Point<dim>> &places;
       const TimeSchedule            &schedule;
       const double                   end_time;
-      /// The sum of all changes, by place, and where it is not zero.
+      /// The total variation by place; the number of places where it is not 0.
       std::vector<double> paths;
       unsigned int        n_moving = 0;
     };
@@ -255,7 +254,7 @@ namespace Viscoplastic
       }
     catch (const ExceptionBase &)
       {
-        return {}; // no value at a time that perhaps no step has
+        return {}; // undefined at a time where perhaps no step ends
       }
   }
 
@@ -272,7 +271,7 @@ namespace Viscoplastic
     for (const Kink &kink : find_kinks(datum, places, schedule))
       if (kink.is_jump)
         return kink.t;
-    // Those at both ends of the run make no kinks.
+    // Jumps at the ends of the run are not among the kinks.
     const double end = schedule.end_time(), near = 10. * accuracy * end;
     try
       {
@@ -293,7 +292,7 @@ namespace Viscoplastic
           }
       }
     catch (const ExceptionBase &)
-      {} // no value at a time that perhaps no step has
+      {} // undefined at a time where perhaps no step ends
     return {};
   }
 
@@ -318,7 +317,7 @@ namespace Viscoplastic
           entries.push_back(datum.name_of_entry());
       });
 
-    // Those of several data at the same time are one.
+    // Merge kinks of several data at the same time.
     std::vector<Kink> &kinks = result.kinks;
     std::sort(kinks.begin(), kinks.end(), [](const Kink &a, const Kink &b) {
       return a.t < b.t;

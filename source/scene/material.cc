@@ -43,7 +43,7 @@ namespace Viscoplastic
             }
         }
 
-      // Columns and rows 4 and 5 are yz and xz.
+      // Rows and columns 3 and 4 (from 0) belong to the shears yz and xz.
       if (dim == 2)
         for (const unsigned int in_plane : {0, 1, 2, 5})
           for (const unsigned int out_of_plane : {3, 4})
@@ -68,7 +68,7 @@ namespace Viscoplastic
     }
 
 
-    /// The time in @p text, or @p otherwise if it is empty.
+    /// Return the time in @p text, or @p otherwise if that is empty.
     double
     read_time(const std::string &text,
               const std::string &entry,
@@ -85,7 +85,7 @@ namespace Viscoplastic
 
 
 
-    /// T_L of `Law temperature', infinity for `infinite'.
+    /// Return T_L of `Law temperature'; infinity for `infinite'.
     template <int dim>
     double
     law_temperature(const std::string      &section,
@@ -113,7 +113,7 @@ namespace Viscoplastic
 
 
 
-    /// @p temperature: null in scenes that have none.
+    /// @p temperature: null in scenes without.
     template <int dim>
     std::unique_ptr<const ViscoplasticLaw>
     make_law(const std::string                 &section,
@@ -197,8 +197,8 @@ namespace Viscoplastic
                   "."));
     if (!parameters.voigt_matrix.empty())
       {
-        // What the file gives is used, or refused; the defaults alone go with
-        // a matrix, since complete parameter files hold them.
+        // Moduli given beside a matrix are refused, except for their default
+        // values, since complete parameter files contain these.
         const MaterialParameters defaults;
         AssertThrow(parameters.youngs_modulus == defaults.youngs_modulus &&
                       parameters.poissons_ratio == defaults.poissons_ratio,
@@ -235,7 +235,7 @@ namespace Viscoplastic
   Material<dim>::stiffness(const Point<dim> &x) const
   {
     const Stiffness result = anisotropic ? *anisotropic : isotropic(x);
-    // 2 mu is Young's modulus where Poisson's ratio is zero.
+    // Young's modulus is 2 mu if Poisson's ratio is zero.
     return is_absent ?
              Stiffness::isotropic(absent_stiffness *
                                     result.smallest_deviatoric_eigenvalue(),

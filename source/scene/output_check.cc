@@ -8,8 +8,8 @@ namespace Viscoplastic
 {
   namespace
   {
-    /// Throw unless the scene has the fields of contact and friction that @p
-    /// entry asks for.
+    /// Throw ExcMessage unless the scene has the @p fields of contact, friction
+    /// and history that @p entry asks for.
     template <int dim>
     void
     check_fields(const Scene<dim>              &scene,
@@ -38,8 +38,8 @@ namespace Viscoplastic
 
 
 
-    /// Throw likewise for places, of which some have to be on Gamma_3 if there
-    /// are fields of the boundary.
+    /// Throw ExcMessage unless the scene has the @p fields and, for fields of
+    /// the boundary, some of the @p points are on Gamma_3.
     template <int dim>
     void
     check_fields_at(

@@ -7,7 +7,7 @@ namespace Viscoplastic
 {
   namespace
   {
-    // Beyond that it is rather a mistake; the points are kept in memory.
+    // All points are kept in memory; a larger number is probably a mistake.
     constexpr int most_points_of_line = 100000;
 
 
@@ -32,7 +32,7 @@ namespace Viscoplastic
 
 
 
-    /// The integral over what @p place names, without fields.
+    /// The integral over the place with this name, without fields.
     OutputIntegral
     read_domain(const std::string &place, const PlaceNames &names)
     {
@@ -63,7 +63,7 @@ namespace Viscoplastic
     std::vector<Point<dim>> result;
     for (unsigned int i = 0; i < n_points; ++i)
       {
-        // Exactly the ends.
+        // This form is exact at both ends.
         const double share = double(i) / (n_points - 1);
         result.push_back(Point<dim>((1. - share) * begin + share * end));
       }

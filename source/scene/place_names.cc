@@ -19,7 +19,7 @@ namespace Viscoplastic
 
 
 
-    /// Names stand in lists and sentences, and differ from numbers.
+    /// Throw unless the name fits lists and sentences and is no number.
     void
     check_name(const std::string &name, const std::string &entry)
     {
@@ -94,8 +94,8 @@ namespace Viscoplastic
     add_list("point", parameters.output.points, "Output/Points");
     add_list("line", parameters.output.lines, "Output/Lines");
 
-    // Of groups, those that can be names. One may be both material and
-    // boundary; what the scene names itself is nothing else.
+    // Add physical groups with admissible names. Of a material and a boundary
+    // with the same name, one has it; names of other places are refused.
     const std::map<PlaceNumber, std::string> given    = names;
     const GeometryParameters                &geometry = parameters.geometry;
     if (geometry.file.empty())
@@ -123,7 +123,7 @@ namespace Viscoplastic
               names[place] = name;
             }
           catch (const ExceptionBase &)
-            {} // a place without a name has its number
+            {} // the place goes by its number
       }
   }
 

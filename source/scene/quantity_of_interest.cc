@@ -40,7 +40,7 @@ namespace Viscoplastic
       add(Kind::contact_force, all, "contact_force");
     for (const auto &[id, condition] : boundary)
       {
-        // The force on the only one is that on all, under either name.
+        // On a single contact boundary, its force and the sum are the same.
         const std::string suffix = '_' + std::to_string(id) + '_';
         if (const auto at = column.find(suffix);
             n_contacts == 1 && condition.has_contact_points() &&
@@ -58,7 +58,7 @@ namespace Viscoplastic
           add(Kind::contact_force, id, "contact_force_" + std::to_string(id));
       }
     for (const auto &[id, condition] : boundary)
-      // The dual problem knows forces of constraints, not of springs.
+      // The dual problem has reactions of constraints, but not of springs.
       if (condition.constrains() && !condition.has_springs())
         add(Kind::reaction, id, "reaction_" + std::to_string(id));
     for (unsigned int i = 0; i < n_points; ++i)

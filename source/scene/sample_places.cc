@@ -14,7 +14,7 @@ namespace Viscoplastic
 
 
 
-    /// Places in cells or faces of dimension @p n, spread evenly.
+    /// About n_places points, spread evenly over parts of dimension @p n.
     template <int n, int dim, typename Iterator>
     std::vector<Point<dim>>
     places_in(const std::vector<Iterator> &parts)

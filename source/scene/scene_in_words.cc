@@ -5,13 +5,13 @@
 
 #include <cmath>
 
-// What a scene has, in words for the user.
+// The effects of a scene in words for the user.
 
 namespace Viscoplastic
 {
   namespace
   {
-    /// What a contact law and a friction law are together.
+    /// A contact law combined with a friction law, in words.
     std::string
     in_words(const ContactLaw &contact, const FrictionLaw &friction)
     {
@@ -25,8 +25,8 @@ namespace Viscoplastic
 
 
 
-    /// Add "@p name on A and boundary 3, 4" with all boundaries whose condition
-    /// @p holds, unless there are none.
+    /// Add "@p name on A and boundary 3, 4" with all boundaries for whose
+    /// condition @p holds is true, if any.
     template <int dim, typename Predicate>
     void
     add_on_boundaries(const Scene<dim>         &scene,

@@ -12,7 +12,7 @@
 #include <algorithm>
 #include <limits>
 
-// What a scene learns from its mesh, and what is wrong with the two together.
+// Consistency checks of a scene and its mesh.
 
 namespace Viscoplastic
 {
@@ -88,7 +88,7 @@ namespace Viscoplastic
     const parallel::distributed::Triangulation<dim> &triangulation) const
   {
     const std::string model = "'Geometry/Plane model' = axisymmetric";
-    double            least = 0.; // beyond the axis, in units of a cell
+    double            least = 0.; // of x / cell diameter
     for (const auto &cell : triangulation.active_cell_iterators())
       if (!cell->is_artificial())
         for (const unsigned int v : cell->vertex_indices())
@@ -101,7 +101,7 @@ namespace Viscoplastic
         model +
         " it is the section of a body of revolution on one side of x = 0."));
 
-    // On the coarse mesh, which all ranks know.
+    // The coarse mesh is known to all ranks.
     std::set<unsigned int> on_axis, held;
     for (const auto &cell : triangulation.cell_iterators_on_level(0))
       {
@@ -294,7 +294,7 @@ namespace Viscoplastic
         is_used |= material->law && material->law->depends_on_temperature();
         if (!material->needs_absolute_temperature())
           continue;
-        // Where R is known, so are its kelvins. Colder creep is helium's.
+        // The default R needs kelvins; values this low suggest degrees Celsius.
         constexpr double suspiciously_cold = 60.;
         double           least = std::numeric_limits<double>::infinity();
         for (const double T :

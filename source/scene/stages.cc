@@ -15,8 +15,9 @@ namespace Viscoplastic
 {
   namespace
   {
-    /// The end of the phase at time @p t, up to rounding, or nothing if that is
-    /// not before the end of the run. Throws ExcMessage if no phase ends then.
+    /// Return the end of the phase at time @p t; nothing if it is not before
+    /// the end of the run. Throws ExcMessage if t is not, up to rounding, that
+    /// end.
     std::optional<double>
     end_of_phase(const TimeSchedule &schedule,
                  const double        t,
@@ -99,7 +100,7 @@ namespace Viscoplastic
                                                 /* is_absent = */ true));
         entry.absent                = materials.back().get();
         const auto [added, removed] = times[entry.material];
-        // The first stage is that of steps to the first end.
+        // Stage n + 1 begins where stage n ends, at stage_ends[n].
         entry.begin =
           std::isfinite(added) || added > 0. ? 1 + stage_of_step_to(added) : 0;
         entry.end = 1 + stage_of_step_to(removed);
@@ -129,7 +130,7 @@ namespace Viscoplastic
     const std::set<types::material_id>              &changing,
     const parallel::distributed::Triangulation<dim> &triangulation)
   {
-    // All ranks have the coarse mesh.
+    // The coarse mesh is known to all ranks.
     std::vector<typename Triangulation<dim>::cell_iterator> others;
     for (const auto &cell : triangulation.cell_iterators_on_level(0))
       for (const unsigned int f : cell->face_indices())
@@ -154,7 +155,7 @@ namespace Viscoplastic
     if (others.empty())
       return;
 
-    // Of each vertex the first one of its body.
+    // Mark each vertex by the least vertex index of its connected body.
     std::vector<unsigned int> first(triangulation.n_vertices());
     std::iota(first.begin(), first.end(), 0);
     for (bool is_done = false; !is_done;)

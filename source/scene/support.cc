@@ -10,12 +10,12 @@ namespace Viscoplastic
 {
   namespace
   {
-    /// How far from a vertex a point may be given, in sizes of the body.
+    /// The largest distance from a vertex, relative to the size of the body.
     constexpr double vertex_tolerance = 1e-6;
 
 
 
-    /// `0; free' of `x': what is held of u.
+    /// Return the displacement entry of the held components: `0; free' for `x'.
     template <int dim>
     std::string
     displacement_of(const std::string &components,
@@ -151,7 +151,7 @@ namespace Viscoplastic
     const double size     = body_diagonal(triangulation);
     for (Support<dim> &support : supports)
       {
-        // Those that all of its nodes are on.
+        // The boundaries on which all nodes of the support lie.
         std::set<types::boundary_id> here = support.boundaries;
         if (support.position)
           {

@@ -17,21 +17,21 @@
 
 namespace Viscoplastic
 {
-  // What a checkpoint holds of mesh and fields, in bytes. Nothing depends on
+  // Mesh and fields of a checkpoint, packed into bytes. They do not depend on
   // the numbering of cells or degrees of freedom or on the number of ranks:
-  // values belong to cells and to vertices of cells, and cells are named by
-  // their CellId.
+  // values belong to cells, identified by their CellId, and to vertices of
+  // cells.
   //
-  // deal.II's Triangulation::save() and load() do the same, but end the process
-  // on a full disk or a damaged file, since p4est does.
+  // Triangulation::save() and load() of deal.II do the same, but p4est aborts
+  // the process on a full disk or a damaged file.
 
-  /// The active cells of this rank, in their order.
+  /// Pack the active cells owned by this rank, in their order.
   template <int dim>
   std::string
   pack_mesh(const parallel::distributed::Triangulation<dim> &triangulation);
 
-  /// The cells that pack_mesh() has packed. Throws ExcMessage if they are none
-  /// of a mesh with @p n_coarse_cells.
+  /// The cells packed by pack_mesh(). Throws ExcMessage if they are not cells
+  /// of a mesh with @p n_coarse_cells coarse cells.
   template <int dim>
   std::vector<CellId>
   unpack_mesh(const std::string &bytes, const unsigned int n_coarse_cells);
@@ -40,18 +40,17 @@ namespace Viscoplastic
   void
   require_sense(const bool condition);
 
-  /// Refine and coarsen until the mesh is the one that pack_mesh() has seen on
-  /// all ranks together, whose results are @p parts. Throws ExcMessage if that
-  /// is no mesh on the present coarse cells. Collective.
+  /// Refine and coarsen until the mesh is the one of @p parts, the results of
+  /// pack_mesh() on all ranks. Throws ExcMessage if that is no mesh with the
+  /// present coarse cells. Collective.
   template <int dim>
   void
   restore_mesh(const std::vector<std::string>            &parts,
                parallel::distributed::Triangulation<dim> &triangulation);
 
-  /// What is attached to the cells of this rank and to their vertices:
-  /// displacements, fields at samples, the contact points of @p face (null
-  /// without), truncations of it, and @p squared_estimate of active cells
-  /// (empty without an estimator).
+  /// Pack the data at owned cells and their vertices: displacements, fields at
+  /// samples, the contact points of @p face (null without) and truncations of
+  /// it, and @p squared_estimate of active cells (empty without an estimator).
   template <int dim>
   std::string
   pack_fields(const StressSpace<dim>                    &stress_space,
@@ -60,8 +59,8 @@ namespace Viscoplastic
               const std::vector<const FaceTruncation *> &truncations,
               const Vector<double>                      &squared_estimate);
 
-  /// The packed mesh and fields (pack_mesh(), pack_fields()) of some or all
-  /// ranks, and which optional fields they contain.
+  /// Packed meshes and fields (pack_mesh(), pack_fields()) of some or all
+  /// ranks, and the optional fields that they contain.
   struct PackedFields
   {
     std::vector<std::string> meshes, fields;
@@ -72,11 +71,11 @@ namespace Viscoplastic
     std::array<bool, 7> has_sample_field;
   };
 
-  /// The inverse, on the same mesh. Sets the fields at nodes, contact and
-  /// those at samples of @p state, and as many truncations as were packed.
-  /// Returns whether that was all that this rank needs. Throws ExcMessage for
-  /// bytes that make no sense. Not collective but for the exchange of ghost
-  /// values at its end.
+  /// The inverse of pack_fields(), on the same mesh. Sets nodal fields, contact
+  /// and fields at samples of @p state, and as many truncations as were packed.
+  /// Returns whether @p packed has all data of this rank. Throws ExcMessage for
+  /// inconsistent bytes. Only the exchange of ghost values at the end is
+  /// collective.
   template <int dim>
   bool
   unpack_fields(const PackedFields                  &packed,
@@ -87,13 +86,13 @@ namespace Viscoplastic
                 Vector<double>                      &squared_estimate);
 
   /// The coarse mesh in a form that can be compared: topology with ids, and
-  /// places of the vertices.
+  /// positions of the vertices.
   struct CoarseMesh
   {
     std::vector<std::uint8_t> topology;
     std::vector<double>       vertices;
 
-    /// Whether it is the same up to rounding of the vertices.
+    /// Whether both meshes are equal up to rounding of the vertices.
     bool
     agrees_with(const CoarseMesh &other) const;
   };

@@ -8,11 +8,11 @@
 
 namespace Viscoplastic
 {
-  /// The description of a checkpoint in its directory: program, scene, step and
-  /// files.
+  /// The description of a checkpoint, stored in its directory: program, scene,
+  /// step and files.
   struct CheckpointManifest
   {
-    /// Number and time of the step at whose end it was written.
+    /// Number and end time of the step after which the checkpoint was written.
     unsigned int n         = 0;
     double       t         = 0.;
     unsigned int dimension = 0, n_ranks = 0;
@@ -32,11 +32,11 @@ namespace Viscoplastic
     std::string
     text() const;
 
-    /// Throws ExcMessage where the text is damaged or of another version.
+    /// Throws ExcMessage if the text is damaged or of another version.
     static CheckpointManifest
     of_text(const std::string &text);
   };
 
-  /// The first words of the text of every manifest, in all versions.
+  /// The beginning of the text of every manifest, in all versions.
   extern const std::string first_words_of_manifests;
 } // namespace Viscoplastic

@@ -5,9 +5,9 @@
 
 namespace Viscoplastic
 {
-  /// When a run writes a checkpoint by itself, and when its wall time is over.
-  /// Knows nothing of other ranks: the clock of one of them has to decide for
-  /// all. Times are seconds since the start of the process.
+  /// Decides when checkpoints are due without a signal, and when the wall time
+  /// limit is reached. Clocks of ranks differ, so that one rank has to decide
+  /// for all. Times are seconds since the start of the process.
   class CheckpointSchedule
   {
   public:
@@ -15,7 +15,7 @@ namespace Viscoplastic
       : wanted(wanted)
     {}
 
-    /// The first step of this process begins.
+    /// Start the clocks before the first step of this process.
     void
     begin_steps(const double now)
     {
@@ -26,12 +26,12 @@ namespace Viscoplastic
     {
       /// Whether a checkpoint is due by number of steps or wall time.
       bool is_due = false;
-      /// Whether another step as long as the last one would end too late.
+      /// Whether another step as long as the last one would exceed the limit.
       bool is_late = false;
     };
 
-    /// The decision after step @p n; the last step is due, too, for runs that
-    /// are continued by another phase.
+    /// Return the decision after step @p n. Regular checkpoints are also due
+    /// after the last step, for runs that are continued by another phase.
     Decision
     after_step(const unsigned int n, const bool is_last_step, const double now)
     {
@@ -47,14 +47,14 @@ namespace Viscoplastic
       return decision;
     }
 
-    /// A checkpoint has been written.
+    /// Restart the clock after a checkpoint has been written.
     void
     restart_clock(const double now)
     {
       last_checkpoint = now;
     }
 
-    /// Whether the scene asks for checkpoints without a signal.
+    /// Whether the scene asks for checkpoints by steps or wall time.
     bool
     is_regular() const
     {

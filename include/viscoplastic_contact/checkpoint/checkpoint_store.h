@@ -14,19 +14,19 @@
 
 namespace Viscoplastic
 {
-  /// The checkpoints of a run: a directory with a subdirectory `step_000012'
-  /// for each of the last ones, which holds any number of files and a manifest
-  /// with their sizes and checksums.
+  /// The checkpoints of a run: a directory with subdirectories, as
+  /// `step_000012', each with any number of files and a manifest of their sizes
+  /// and checksums.
   ///
-  /// A checkpoint comes into being as a whole: it is written into a directory
-  /// of another name, put to disk (fsync), and renamed. Whatever ends the
-  /// program at whatever instant, the checkpoints before it are untouched.
+  /// Checkpoints are written atomically: into a directory of another name,
+  /// which is flushed to disk (fsync) and then renamed. If the process is
+  /// killed at any time, earlier checkpoints are untouched.
   ///
-  /// Only what the program has written is ever removed: the files that the
-  /// manifest of a checkpoint names, or the list with which an unfinished one
-  /// begins, and then the directory, if nothing else is in it. Functions that
-  /// remove something return a sentence for each directory that has stayed for
-  /// this reason.
+  /// Only files that the program has written are ever removed: those named by
+  /// the manifest of a checkpoint, or by the list that an unfinished one has
+  /// instead, and then the directory, if nothing else is in it. Functions that
+  /// remove something return a sentence for each directory that therefore
+  /// stays.
   ///
   /// Member functions are collective; errors are ExcMessage on all ranks.
   class CheckpointStore
@@ -36,32 +36,32 @@ namespace Viscoplastic
 
     const std::string directory; // ends with a slash
 
-    /// The name under which a checkpoint of step @p n is kept.
+    /// The path of the checkpoint of step @p n.
     std::string
     path(const unsigned int n) const
     {
       return directory + "step_" + dealii::Utilities::int_to_string(n, 6);
     }
 
-    /// Make the directory; throws ExcMessage if it cannot be made.
+    /// Create the directory. Throws ExcMessage if that fails.
     void
     make_directory() const;
 
-    /// Write the files of each rank (name to bytes) and a manifest that lists
-    /// them, and remove all but the newest @p n_kept checkpoints. A foreign
-    /// directory of that name is renamed.
+    /// Write the files of each rank (name to bytes) and a manifest of all
+    /// files, and remove all but the newest @p n_kept checkpoints. An existing
+    /// directory of that name is replaced, or renamed if it has other files.
     std::vector<std::string>
     write(CheckpointManifest                        manifest,
           const std::map<std::string, std::string> &files_of_this_rank,
           const unsigned int                        n_kept) const;
 
-    /// The newest checkpoint whose files are all there and have their
-    /// checksums, if any; @p remarks takes a sentence for each that has been
-    /// passed over.
+    /// Return the newest checkpoint whose files are complete with correct
+    /// checksums, if any; adds to @p remarks a sentence for each newer one that
+    /// is not.
     std::optional<CheckpointManifest>
     newest(std::vector<std::string> &remarks) const;
 
-    /// The contents of a file of a checkpoint, checked again. Not collective.
+    /// Return a file of a checkpoint after checking it. Not collective.
     std::string
     read(const CheckpointManifest &manifest, const std::string &name) const;
 
@@ -71,10 +71,10 @@ namespace Viscoplastic
       std::vector<std::string> remarks;
     };
 
-    /// Remove checkpoints after step @p n, what has been left of unfinished
-    /// ones, and all but the newest @p n_kept (0: no one stays) up to step
-    /// @p n: a run may have been killed after it had written one, before it
-    /// removed the oldest. These are not in the number of checkpoints.
+    /// Remove checkpoints after step @p n, unfinished ones, and all but the
+    /// newest @p n_kept (0: none is kept) up to step @p n: an interrupted run
+    /// may have more, since it removes old ones last. Counts complete
+    /// checkpoints after step @p n, or all if none is kept.
     Removal
     remove_others(const unsigned int n, const unsigned int n_kept) const;
 
@@ -85,22 +85,22 @@ namespace Viscoplastic
     }
 
   private:
-    /// A directory with a name that checkpoints have, be they valid or not.
+    /// A directory with the name of a checkpoint, valid or not.
     struct Entry
     {
       std::string  path;
       unsigned int n = 0;
-      /// False for one that is unfinished or being replaced.
+      /// False if the checkpoint is unfinished or being replaced.
       bool is_complete = true;
     };
 
-    /// All checkpoints by ascending steps. Empty if there is no directory;
-    /// throws ExcMessage if it cannot be read. Not collective.
+    /// Return all entries by ascending step; none if there is no directory.
+    /// Throws ExcMessage if it cannot be read. Not collective.
     std::vector<Entry>
     entries() const;
 
-    /// Remove all but the newest @p n_kept (at least one) up to step @p n,
-    /// which is there. Not collective.
+    /// Remove all but the newest @p n_kept (at least one) checkpoints up to
+    /// step @p n, which exists. Not collective.
     void
     remove_before(const unsigned int        n,
                   const unsigned int        n_kept,

@@ -25,8 +25,8 @@ namespace Viscoplastic
 
 
 
-  /// The complete state of a run between two steps, except for its mesh: all
-  /// that a restart restores.
+  /// The complete state of a run between two steps, except for its mesh, which
+  /// a restart restores.
   template <int dim>
   struct RunState
   {
@@ -38,32 +38,31 @@ namespace Viscoplastic
     Recorder<dim>       &recorder;
   };
 
-  /// The differences between the parameters of a run and those in its
+  /// The differences between the parameters of a run and those of its
   /// checkpoint.
   struct ParameterChanges
   {
-    /// "'Time/Phases' is 2: 20 (was 1: 10)", those that a run may go on with
-    /// and those with which it cannot.
+    /// Sentences as "'Time/Phases' is 2: 20 (was 1: 10)" on changes with which
+    /// a run can continue, and on those with which it cannot.
     std::vector<std::string> allowed, forbidden;
-    /// Whether loads, conditions or laws are among those that are allowed.
+    /// Whether an allowed change concerns loads, boundary conditions or laws.
     bool of_data = false;
   };
 
-  /// Tell the user which parameters are not those of a checkpoint.
+  /// Tell the user which parameters differ from those of a checkpoint.
   void
   remark_on_changes(const CheckpointManifest &checkpoint,
                     const ParameterChanges   &changes,
                     Console                  &console);
 
-  /// The contents of a checkpoint: its manifest, and the files of this rank by
-  /// name.
+  /// The contents of a checkpoint: manifest, and files of this rank by name.
   struct PackedRun
   {
     CheckpointManifest                 manifest;
     std::map<std::string, std::string> files;
   };
 
-  /// Pack a run. @p output_times: when fields have been written. Collective.
+  /// Pack a run. @p output_times: times of the fields written. Collective.
   template <int dim>
   PackedRun
   pack_run(RunState<dim>                                   &run,
@@ -72,27 +71,27 @@ namespace Viscoplastic
            const TimeStepper<dim>                          &time_stepper,
            const std::vector<double>                       &output_times);
 
-  /// A checkpoint that a run goes on from, read in two parts, since fields need
-  /// a discretization and that needs the mesh. Errors are ExcMessage with a
-  /// sentence for the user. Collective.
+  /// A checkpoint from which a run continues. It is read in two parts, since
+  /// fields need a discretization, which needs the mesh. Errors are ExcMessage
+  /// with a sentence for the user. Collective.
   template <int dim>
   class RunArchive
   {
   public:
-    /// Read what is the same on all ranks into @p run and bring back the mesh.
-    /// Throws if the checkpoint belongs to another scene. All arguments stay
-    /// in use.
+    /// Read the data common to all ranks into @p run and restore the mesh.
+    /// Throws if the checkpoint belongs to another scene. Keeps references to
+    /// the first three arguments.
     RunArchive(const CheckpointStore                     &store,
                const CheckpointManifest                  &checkpoint,
                RunState<dim>                             &run,
                parallel::distributed::Triangulation<dim> &triangulation);
 
-    /// Read the fields of the accepted state. Returns what the time stepper has
-    /// kept.
+    /// Read the fields of the accepted state. Returns the data that the time
+    /// stepper keeps between steps.
     StepperMemory<dim>
     read_fields(const Discretization<dim> &discretization);
 
-    /// Parameters that the user has changed since the checkpoint was written.
+    /// Parameters that have changed since the checkpoint was written.
     const ParameterChanges changes;
     std::vector<double>    output_times;
     double                 earlier_seconds = 0.;

@@ -13,13 +13,13 @@
 
 namespace Viscoplastic
 {
-  /// Which effects of a scene have made a difference so far in a run, apart
-  /// from those that its sums and maxima (RunSummary) tell of.
+  /// Records which effects of a scene have acted in a run, apart from those
+  /// that sums and maxima (RunSummary) show.
   template <int dim>
   class ActingEffects
   {
   public:
-    /// Take notice of what acts in a step. Collective.
+    /// Record the effects that act in a step. Collective.
     void
     note(const Discretization<dim> &discretization,
          const AcceptedStep<dim>   &step);
@@ -30,8 +30,8 @@ namespace Viscoplastic
       mesh_has_changed = true;
     }
 
-    /// Sentences on effects that never acted, with the entry that can go.
-    /// @p run is the whole run.
+    /// Return sentences on effects that never acted, with the entry that can be
+    /// removed. @p run: the summary of the whole run.
     std::vector<std::string>
     that_never_acted(const Scene<dim> &scene, const RunSummary<dim> &run) const;
 
@@ -51,9 +51,9 @@ namespace Viscoplastic
     bool                         mesh_has_changed = false;
     /// Whether a friction bound has been above zero somewhere.
     bool has_bound = false;
-    /// Whether an obstacle has been touched, and left or not reached.
+    /// Whether some obstacle point has been in contact, and some point open.
     bool has_touched = false, has_opened = false;
-    /// Whether, before, the gap has closed where the mesh does not see it.
+    /// Whether the gap has closed between nodes before any node touched.
     bool closes_between_nodes = false;
     bool foundation_has_moved = false;
   };

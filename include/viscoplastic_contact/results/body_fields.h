@@ -19,17 +19,16 @@ namespace Viscoplastic
     std::array<double, GeometryInfo<dim>::vertices_per_cell>;
 
 
-  /// Fields of the body in a state: what the outputs, points, lines and
-  /// integrals have of it comes from here. Displacement and velocity have
-  /// values at vertices, all others are means of cells. Values come in the
-  /// order of the enumeration, one for each component. Nothing is computed for
-  /// what is not asked for.
+  /// Fields of the body in a state, for all outputs: displacement and velocity
+  /// have values at vertices, all others are cell means. Values are in the
+  /// order of the enumeration, with one for each component. Only requested
+  /// fields are computed.
   template <int dim>
   class BodyFields
   {
   public:
-    /// Make the fields of the body among @p fields; the other arguments stay in
-    /// use as long as this object. Collective.
+    /// Compute the fields of the body among @p fields. Keeps references to the
+    /// other arguments. Collective.
     BodyFields(const FlowLaws<dim>           &laws,
                const State<dim>              &state,
                const std::set<RecordedField> &fields);
@@ -38,7 +37,7 @@ namespace Viscoplastic
     BodyFields &
     operator=(const BodyFields &) = delete;
 
-    /// The fields that the output of a scene has, but for the nodal ones.
+    /// The fields in the output of a scene, except for nodal ones.
     static std::set<RecordedField>
     of_output(const Scene<dim> &scene);
 
@@ -46,32 +45,32 @@ namespace Viscoplastic
     static std::vector<std::string>
     names(const std::set<RecordedField> &fields);
 
-    /// Add to each of @p values the sum over the vertices of an owned cell of
-    /// weight times value: an interpolation, or an integral.
+    /// Add to each of @p values the sum of weight times value over the vertices
+    /// of an owned cell, which is an interpolation or an integral.
     void
     add(const std::size_t         cell,
         const VertexWeights<dim> &weights,
         double                   *values) const;
 
-    /// The means of a cell alone.
+    /// The values of those fields that are cell means.
     std::vector<double>
     means(const std::size_t cell) const;
 
   private:
     const StressSpace<dim> &stress_space;
     const State<dim>       &state;
-    /// The displacement as it is reported.
+    /// Storage of the reported displacement, if it is not that of the state.
     DistributedVector        difference;
     const DistributedVector &u;
-    /// z without thermal stress.
+    /// Storage of z without thermal stress, if that differs from z.
     IrreversibleStress                   rest;
     const IrreversibleStress            &irreversible;
     const typename FlowLaws<dim>::AtTime now;
-    /// The fields that are means of cells, and the others.
+    /// The fields that are cell means, and the nodal ones.
     std::set<RecordedField>                cell_fields;
     std::vector<const DistributedVector *> nodal_fields;
-    /// G at the samples, where it is needed, and the irreversible strain of the
-    /// initial data, where there is some.
+    /// G at the samples, and irreversible strain of the initial data by cell;
+    /// empty unless needed.
     IrreversibleStress                 rate;
     std::vector<SymmetricTensor<2, 3>> initial_strain;
   };

@@ -12,23 +12,22 @@
 
 namespace Viscoplastic
 {
-  /// Fields of the boundary in a state, as BodyFields are of the body: those of
-  /// contact and friction, which have values at the nodes of Gamma_3, and
-  /// tractions, which are those of the mean stress of the cell behind a face.
-  /// On the other side of contact between two bodies there are the same fields:
-  /// means over the nodes opposite, of vectors the reverse.
+  /// Fields of the boundary in a state: those of contact and friction, with
+  /// values at the nodes of Gamma_3, and tractions of the mean stress in the
+  /// cell at a face. The primary side of contact between two bodies has the
+  /// same fields: means over opposite nodes, with the sign of vectors reversed.
   template <int dim>
   class BoundaryFields
   {
   public:
-    /// Make the fields of the boundary among @p fields. @p face is null without
-    /// contact points. Collective.
+    /// Compute the fields of the boundary among @p fields. @p face is null
+    /// without contact points. Collective.
     BoundaryFields(const StressSpace<dim>        &stress_space,
                    const State<dim>              &state,
                    const ContactFace<dim>        *face,
                    const std::set<RecordedField> &fields);
 
-    /// The fields of Gamma_3 that the output of a scene has, but for the
+    /// The fields on Gamma_3 in the output of a scene, except for the
     /// displacement. @p face is null without contact points.
     static std::set<RecordedField>
     of_output(const Scene<dim> &scene, const ContactFace<dim> *face);
@@ -53,14 +52,14 @@ namespace Viscoplastic
     static std::vector<std::string>
     names(const std::set<RecordedField> &fields);
 
-    /// Whether a boundary is the other side of contact between two bodies.
+    /// Whether a boundary is the primary side of contact of two bodies.
     bool
     is_other_side(const types::boundary_id id) const
     {
       return secondary_of.count(id) == 1;
     }
 
-    /// The condition on a boundary: that of the contact there, on either side.
+    /// The condition of the contact at a boundary on either of its sides.
     const BoundaryCondition<dim> &
     condition_at(const types::boundary_id id) const
     {
@@ -68,16 +67,16 @@ namespace Viscoplastic
         is_other_side(id) ? secondary_of.at(id) : id);
     }
 
-    /// The values at a vertex of an owned cell, on a face with an outward unit
-    /// normal. Fields of contact need a face of Gamma_3.
+    /// The values at a vertex of an owned cell, on a face with this outward
+    /// unit normal. Fields of contact need a face of Gamma_3.
     std::vector<double>
     values(const std::size_t     cell,
            const unsigned int    face,
            const unsigned int    vertex,
            const Tensor<1, dim> &normal) const;
 
-    /// Add to each of @p values the sum over the vertices of the face of weight
-    /// times value.
+    /// Add to each of @p values the sum of weight times value over the vertices
+    /// of the face.
     void
     add(const std::size_t         cell,
         const unsigned int        face,
@@ -92,7 +91,7 @@ namespace Viscoplastic
 
     void
     make_fields(const ContactFace<dim> *face);
-    /// Make the fields on the other sides of those at the nodes of Gamma_3.
+    /// Set fields on primary sides to means of those on secondary sides.
     void
     carry_across();
 
@@ -108,7 +107,7 @@ namespace Viscoplastic
     /// The secondary boundary of each primary one.
     std::map<types::boundary_id, types::boundary_id> secondary_of;
     /// Nodal fields of contact points, with ghosts; zero at nodes without a
-    /// point, empty where not asked for.
+    /// point, empty unless requested.
     DistributedVector slip, slip_rate, density, bound, utilization, slipping,
       pressure, gap, friction_work;
   };

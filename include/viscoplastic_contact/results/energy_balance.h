@@ -17,12 +17,12 @@ namespace Viscoplastic
 
 
 
-  /// The energies of a state that a change of the mesh changes.
+  /// The energies of a state that change with the mesh.
   struct EnergiesOnMesh
   {
-    /// 1/2 int E^-1 sigma : sigma, and what laws store beyond it.
+    /// 1/2 int E^-1 sigma : sigma, and other energy stored by laws.
     double stored = 0.;
-    /// The work of the present loads on the way from zero to u.
+    /// The work of the present loads along u.
     double of_loads = 0.;
   };
 
@@ -34,26 +34,26 @@ namespace Viscoplastic
   ///                                       + viscous dissipation
   ///                                       + dissipation by friction.
   ///
-  /// The time integration keeps that of the bulk exactly, whatever the step
-  /// size, so that the defect is that of friction: sum lambda . s takes the
-  /// multiplier at the end of each step, the work of the loads the mean. It
-  /// vanishes with the step size, but for steps in which a body jumps, as where
-  /// it slips or opens after a stage. A body gives way when its mesh is
-  /// refined, and the loads do work; what changes of the mesh do to the stored
-  /// energy beyond that is no physics and counts apart.
+  /// Time integration keeps the balance in the body exactly, for all step
+  /// sizes. The defect is due to friction: sum lambda . s uses the multiplier
+  /// at the end of each step, the work of loads the mean. It vanishes with the
+  /// step size, except for steps in which a body jumps, as when it slips or
+  /// opens after a stage. A refined mesh is more compliant, and the loads do
+  /// work; further changes of the stored energy by the mesh are not physical
+  /// and are summed separately.
   struct EnergyBalance
   {
     double initial_energy = 0., stored_energy = 0., external_work = 0.,
            viscous_dissipation = 0., friction_dissipation = 0.;
-    /// What thermal strain has done.
+    /// The work of thermal strain.
     double thermal_work = 0.;
-    /// What changes of the mesh have added to the stored energy beyond the work
-    /// of the loads, which comes from the mesh alone.
+    /// Stored energy added by changes of the mesh beyond the resulting work of
+    /// the loads.
     double adaptation_energy = 0.;
-    /// The same of stages of construction: the energy of what is removed, and
-    /// what the surroundings lose when they give way at once.
+    /// The same for stages of construction: the energy of removed parts, and
+    /// that lost when the rest gives way at once.
     double construction_energy = 0.;
-    /// The largest amount that loads or heating had given.
+    /// The largest absolute work of loads or of heating so far.
     double largest_work = 0.;
 
     void
@@ -74,9 +74,9 @@ namespace Viscoplastic
         {largest_work, std::abs(external_work), std::abs(thermal_work)});
     }
 
-    /// Add a change between two steps: the work of the loads, and to
-    /// adaptation_energy or construction_energy, @p beyond, what the stored
-    /// energy gains beside that.
+    /// Add a change of mesh or stage between two steps: the work of the loads,
+    /// and the stored energy gained beyond it to @p beyond, which is
+    /// adaptation_energy or construction_energy.
     void
     add_change(const EnergiesOnMesh &before,
                const EnergiesOnMesh &after,
@@ -98,8 +98,8 @@ namespace Viscoplastic
              viscous_dissipation - friction_dissipation;
     }
 
-    /// The sum of absolute energies exchanged, to which defect() is compared,
-    /// also where loads give back what they took.
+    /// The largest work plus the initial energy, to which defect() is compared;
+    /// nonzero also if the loads have taken back their work.
     double
     scale() const
     {

@@ -13,14 +13,14 @@
 
 namespace Viscoplastic
 {
-  /// Fields at some points of the body, on one mesh, as the outputs have them:
-  /// a field that is constant in cells is that of the cell that locate_points()
-  /// gives. Fields of the boundary are known at points on Gamma_3.
+  /// Fields at some points of the body, on one mesh, as in the output: a field
+  /// of cell means is that of the cell found by locate_points(). Fields of the
+  /// boundary have values at points on Gamma_3.
   template <int dim>
   class FieldProbes
   {
   public:
-    /// @p discretization stays in use. Collective.
+    /// Keeps a reference to @p discretization. Collective.
     FieldProbes(const Discretization<dim>     &discretization,
                 const std::vector<Point<dim>> &points,
                 const std::set<RecordedField> &fields);
@@ -40,16 +40,16 @@ namespace Viscoplastic
     }
 
     /// Whether a point is on Gamma_3; false if no field of the boundary is
-    /// asked for.
+    /// requested.
     bool
     is_on_contact(const std::size_t point) const
     {
       return is_on_face[point];
     }
 
-    /// The values at one point after the other, on all ranks; nan for fields of
-    /// the boundary at points that are not on Gamma_3, and for those of the
-    /// body at points in an absent material. Collective.
+    /// The values at all points, point by point, on all ranks; NaN for fields
+    /// of the boundary at points that are not on Gamma_3, and for fields of the
+    /// body at points in absent materials. Collective.
     std::vector<double>
     values(const State<dim> &state) const;
 
@@ -58,24 +58,23 @@ namespace Viscoplastic
     const std::set<RecordedField> fields;
     std::vector<std::string>      all_names;
     std::size_t                   n_body;
-    /// The places of the points among the cells of the body, and among the
-    /// faces of Gamma_3.
+    /// The points in cells of the body, and on faces of Gamma_3.
     std::vector<CellPoint<dim>> in_body, on_face;
     std::vector<bool>           is_on_face;
-    /// The points that only cells of absent materials hold.
+    /// The points that are in cells of absent materials only.
     std::vector<std::size_t> absent_points;
   };
 
 
 
   /// The integrals of `Output/Integrals' on one mesh, over the undeformed body:
-  /// for each boundary or material first its area or volume, then its fields,
-  /// then its energies.
+  /// for each boundary or material its area or volume, then its fields, then
+  /// its energies.
   template <int dim>
   class FieldIntegrals
   {
   public:
-    /// @p discretization stays in use. Collective.
+    /// Keeps a reference to @p discretization. Collective.
     explicit FieldIntegrals(const Discretization<dim> &discretization);
 
     /// The names of the values: area_boundary_3,
@@ -86,8 +85,8 @@ namespace Viscoplastic
       return all_names;
     }
 
-    /// After a step from @p old, which may be the same state, on all ranks.
-    /// What has been dissipated is that of the step alone. Collective.
+    /// The values after a step from @p old, which may be @p state, on all
+    /// ranks. Dissipation is that of this step alone. Collective.
     std::vector<double>
     values(const State<dim> &old, const State<dim> &state) const;
 
@@ -98,7 +97,7 @@ namespace Viscoplastic
       return quantities[value];
     }
 
-    /// Whether a value is to be summed over the steps.
+    /// Whether a value belongs to a step and is to be summed over steps.
     bool
     is_of_step(const std::size_t value) const
     {
@@ -120,7 +119,7 @@ namespace Viscoplastic
     std::vector<Piece>
     pieces_of(const OutputIntegral &integral) const;
 
-    /// What the pieces store, and have dissipated.
+    /// The energies stored and dissipated in the given cells.
     std::array<double, 2>
     energies(const std::vector<Piece> &cells,
              const State<dim>         &old,
@@ -131,8 +130,8 @@ namespace Viscoplastic
     std::vector<std::string>        all_names;
     std::vector<Quantity>           quantities; // of the names
     std::vector<bool>               is_dissipation;
-    std::vector<std::vector<Piece>> pieces; // an integral
-    /// The strain within cells, for their elastic energy; null unless needed.
+    std::vector<std::vector<Piece>> pieces; // by integral
+    /// For strains at quadrature points; null unless energies are requested.
     std::unique_ptr<const StressSpace<dim>> points;
   };
 } // namespace Viscoplastic

@@ -15,18 +15,17 @@ namespace Viscoplastic
   line_file_name(const std::size_t i);
 
 
-  /// The files of `Output/Lines': comma separated values, a row for each point
-  /// of the line at each time, one time after the other. Nothing is done in a
-  /// scene without lines.
+  /// The files of `Output/Lines': comma separated values with a row for each
+  /// point of the line, time by time. Does nothing in a scene without lines.
   template <int dim>
   class LineOutput
   {
   public:
-    /// @p scene stays in use.
+    /// Keeps a reference to @p scene.
     explicit LineOutput(const Scene<dim> &scene);
 
-    /// The body is on another mesh now, which stays in use. The points are
-    /// looked for at the next output.
+    /// Set the present mesh and keep a reference to it. Points are located at
+    /// the next output.
     void
     set_mesh(const Discretization<dim> &on_mesh)
     {
@@ -34,35 +33,35 @@ namespace Viscoplastic
       probes.clear();
     }
 
-    /// Begin the files anew in a directory. Collective. Throws ExcMessage if
-    /// they cannot be written, as the other functions do.
+    /// Begin new files in a directory. Throws ExcMessage if they cannot be
+    /// written, as the functions below do. Collective.
     void
     begin(const std::string &directory);
 
-    /// Go on after step @p last_step: later rows go. Collective. Also throws
-    /// ExcMessage if the files are not there, before any has changed.
+    /// Continue after step @p last_step, dropping later rows. Throws ExcMessage
+    /// also if a file is missing, before any is changed. Collective.
     void
     resume(const std::string &directory, const unsigned int last_step);
 
-    /// Write a state if its turn has come. @p fields_are_due: whether the
-    /// fields of this state are written. Collective.
+    /// Write a state if it is due. @p fields_are_due: whether the fields of
+    /// this state are written. Collective.
     void
     write(const State<dim> &state, const bool fields_are_due);
 
-    /// Put all rows to disk. On rank 0.
+    /// Flush all rows to disk. On rank 0.
     void
     synchronize();
 
   private:
-    /// Set the names of the files that rank 0 writes; other ranks have none.
+    /// Set the names of the files; empty on ranks other than 0.
     void
     name_files(const std::string &directory);
 
     const Scene<dim>          &scene;
     std::set<RecordedField>    fields;
     const Discretization<dim> *discretization = nullptr;
-    /// The fields along each line on the present mesh; empty until they are
-    /// needed.
+    /// The fields along each line on the present mesh; empty until the first
+    /// output.
     std::vector<std::unique_ptr<FieldProbes<dim>>> probes;
     std::vector<std::string>                       names;
     std::vector<std::ofstream>                     files;

@@ -22,20 +22,20 @@ namespace Viscoplastic
   struct DataSet;
 
   /// Results in one directory: fields of the body (solution.pvd; revolved.pvd
-  /// of one of revolution) and of Gamma_3 (contact.pvd; opposite.pvd on other
-  /// bodies) as VTU series, the body also as HDF5 (solution.xdmf), and what is
-  /// needed to reproduce the run (parameters.prm, run.json).
+  /// for bodies of revolution) and of Gamma_3 (contact.pvd; opposite.pvd for
+  /// primary sides) as VTU series, those of the body also in HDF5
+  /// (solution.xdmf), and what reproduces the run (parameters.prm, run.json).
   template <int dim>
   class Output
   {
   public:
     /// Makes the directory and writes the record of the run. Collective. Throws
-    /// ExcMessage if the directory cannot be written, or has files of somebody
-    /// else under the names of results.
+    /// ExcMessage if the directory cannot be written or has other files with
+    /// the names of results.
     Output(const Scene<dim> &scene, const MPI_Comm communicator);
 
-    /// Go on after the outputs at the times @p earlier: the series list these
-    /// and no later ones. On all ranks.
+    /// Continue after the outputs at the times @p earlier, which are all that
+    /// the series list. On all ranks.
     void
     resume(const std::vector<double> &earlier);
 
@@ -45,8 +45,8 @@ namespace Viscoplastic
       return times;
     }
 
-    /// Add the estimated error, the costs and what the run has remarked on to
-    /// its record. On all ranks.
+    /// Add estimated errors, costs and remarks to the record of the run. On all
+    /// ranks.
     void
     record_end(const RunSummary<dim>          &summary,
                const RunCosts                 &costs,
@@ -58,24 +58,23 @@ namespace Viscoplastic
       return path;
     }
 
-    /// Whether the fields of step @p n, from t_old to t, are to be written.
+    /// Whether the fields at the end of @p step are to be written.
     bool
     is_due(const TimeStep &step) const;
 
-    /// Write the fields of a state, those of `Output/Additional fields' among
-    /// them. @p face is null without contact points,
-    /// @p squared_estimate without an estimator. Returns sentences about fields
-    /// that are beyond the range of the files for the first time. On one rank
-    /// files are written by a thread of its own while the run goes on, one
-    /// output at a time. Collective.
+    /// Write the fields of a state, including `Output/Additional fields'. @p
+    /// face is null without contact points, @p squared_estimate without an
+    /// estimator. Returns sentences about fields that exceed the range of
+    /// single precision for the first time. In a run with one rank, a thread
+    /// writes the files in the background, one output at a time. Collective.
     std::vector<std::string>
     write_fields(const FlowLaws<dim>    &laws,
                  const State<dim>       &state,
                  const ContactFace<dim> *face,
                  const Vector<double>   *squared_estimate);
 
-    /// Wait for the files of the last output. Throws ExcMessage if they could
-    /// not be written. On all ranks.
+    /// Wait for the files of the last output. Throws ExcMessage if writing them
+    /// has failed. On all ranks.
     void
     finish()
     {
@@ -83,17 +82,16 @@ namespace Viscoplastic
         writing.get();
     }
 
-    /// Throw ExcMessage if it is known by now that the files of the last output
-    /// cannot be written.
+    /// Throw ExcMessage if writing the last output is known to have failed.
     void
     report_failure();
 
   private:
-    /// Write the faces of the boundary with their ids, once, as they are at
-    /// the first output: pictures draw supports and loads there.
+    /// Write the faces of the boundary with their ids, once, on the mesh of the
+    /// first output; pictures show supports and loads there.
     void
     write_boundary(const AdmissibleSpace<dim> &space);
-    // What these return: see write_fields().
+    // The functions below return remarks as write_fields() does.
     std::string
     write_body(const FlowLaws<dim>  &laws,
                const State<dim>     &state,
@@ -104,40 +102,40 @@ namespace Viscoplastic
                   const StressSpace<dim> &stress_space,
                   const State<dim>       &state,
                   const ContactFace<dim> *face);
-    /// Have the piece of this rank and, on rank 0, the record of all of them
-    /// and that of the series written by the next write_in_background().
+    /// Queue the piece of this rank and, on rank 0, the record of all pieces
+    /// and that of the series for the next write_in_background().
     template <typename Data>
     std::string
     write_vtu(const std::string &name,
               Data               data, // a PatchOutput
               const bool         is_series = true);
-    /// As write_vtu(), of the body.
+    /// As write_vtu(), for the body.
     std::string
     write_in_hdf5(const BodyData<dim> &body, const double t);
-    /// A sentence about data sets of a file whose values have been cut off for
-    /// the first time: their indices, the number of data sets for the
-    /// coordinates. Collective.
+    /// Return a sentence about data sets of a file with values cut off for the
+    /// first time. @p cut_off: their indices, with the number of data sets
+    /// standing for the coordinates. Collective.
     std::string
     remark_on_range(const std::string              &file,
                     const std::vector<std::string> &data_sets,
                     const std::set<unsigned int>   &cut_off);
-    /// Begin to write what is in `files`; with several ranks, which leave no
-    /// processor idle, write it.
+    /// Start writing the queued `files`; with several ranks, which leave no
+    /// processor idle, write them at once.
     void
     write_in_background();
-    /// The file that lists the outputs of a series, and its text.
+    /// The name and the text of the file that lists the outputs of a series.
     std::pair<std::string, std::string>
     list(const std::string &name) const;
-    /// Whether these files are in HDF5.
+    /// Whether the files of a series are in HDF5.
     bool
     is_in_hdf5(const std::string &name) const;
     std::vector<std::string>
     series() const;
-    /// Remove pieces of outputs that do not count, on rank 0: those behind the
-    /// last one, and those that no record lists any more. Returns how many.
+    /// Remove outdated pieces of outputs on rank 0: those after the last
+    /// output, and those that no record lists. Returns their number.
     std::size_t
     remove_others(const std::string &name, const std::size_t n_outputs) const;
-    /// Remove what an earlier run has left in the directory, on rank 0.
+    /// Remove files of an earlier run from the directory, on rank 0.
     void
     remove_files_of_earlier_run() const;
 
@@ -145,14 +143,14 @@ namespace Viscoplastic
     const MPI_Comm      communicator;
     std::string         path; // ends with a slash
     std::vector<double> times;
-    /// The mesh of the last output in HDF5, and the file that has it.
+    /// The mesh of the last output in HDF5, and the file that contains it.
     std::shared_ptr<const std::vector<DataSet>> mesh;
     std::string                                 mesh_file;
-    /// What writes the files of the output at the last of these times.
+    /// Functions that write the files of the last output.
     std::vector<std::function<void()>> files;
-    /// Done when they are written; its destructor waits for that.
+    /// Ready when the files are written, for which its destructor waits.
     std::future<void> writing;
-    /// Fields that the user has been told of.
+    /// Fields that have been reported as cut off.
     std::set<std::string> cut_fields;
   };
 } // namespace Viscoplastic

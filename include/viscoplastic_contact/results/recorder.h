@@ -20,58 +20,58 @@
 
 namespace Viscoplastic
 {
-  /// Keeps the record of a run: measures each step, warns of what makes its
-  /// numbers doubtful, writes its row of statistics.csv, shows the progress,
-  /// and sums up at the end.
+  /// Keeps the record of a run: evaluates each step, warns of doubtful results,
+  /// writes the row of statistics.csv, shows the progress, and summarizes the
+  /// run at its end.
   template <int dim>
   class Recorder
   {
   public:
-    /// All arguments stay in use. @p timer has the seconds by phase, @p budget
-    /// is null unless the run has a tolerance.
+    /// Keeps references to all arguments. @p timer has the seconds by phase, @p
+    /// budget is null unless the run has a tolerance.
     Recorder(const Scene<dim>  &scene,
              const StepControl &control,
              Console           &console,
              TimerOutput       &timer,
              const ErrorBudget *budget);
 
-    /// The scene is on another mesh now. Collective.
+    /// Set the present mesh. Keeps a reference. Collective.
     void
     set_mesh(const Discretization<dim> &discretization);
 
-    /// The next record has the times of now, however late it comes.
+    /// Stop the clock: the next record gets the present times.
     void
     stop_clock()
     {
-      stopped_clock.reset(); // which elapsed() asks
+      stopped_clock.reset(); // since elapsed() depends on it
       stopped_clock.emplace(
         timer.get_summary_data(TimerOutput::total_wall_time), elapsed());
     }
 
-    /// Write the rows into a table from now on; on rank 0. Without, the record
-    /// is kept but not written.
+    /// Write the rows to a table from here on; on rank 0. Without a table they
+    /// are not written.
     void
     write_to(std::unique_ptr<Statistics> table)
     {
       statistics = std::move(table);
     }
 
-    /// Put all rows to disk. On rank 0.
+    /// Flush all rows to disk. On rank 0.
     void
     synchronize()
     {
       statistics->synchronize();
     }
 
-    /// Record a step from @p old; step 0 is the initial state. @p errors are
-    /// those against a known solution. Collective.
+    /// Record a step from @p old; step 0 is the initial state. @p errors: those
+    /// against a known solution. Collective.
     void
     record(const EvaluatedState<dim> &old,
            const AcceptedStep<dim>   &step,
            const SolutionErrors      &errors);
 
-    /// Take into the energy balance what a change of the mesh between two steps
-    /// changes in the energies of the state.
+    /// Add a change of the mesh between two steps, which changes the energies
+    /// of the state, to the energy balance.
     void
     record_mesh_change(const EnergiesOnMesh &before,
                        const EnergiesOnMesh &after)
@@ -85,12 +85,12 @@ namespace Viscoplastic
       balance.add_change(before, after, balance.construction_energy);
     }
 
-    /// Go on from a state that an earlier part of the run has reached in
-    /// @p seconds.
+    /// Continue from a state that earlier parts of the run have reached in @p
+    /// seconds.
     void
     resume(const State<dim> &state, const double seconds);
 
-    /// Take the time of an earlier pass for that of a pilot run.
+    /// Count the time of an earlier pass as that of a pilot run.
     void
     count_pilot_run(const Recorder<dim> &earlier)
     {
@@ -99,17 +99,17 @@ namespace Viscoplastic
     }
 
     /// Throws ExcMessage if the largest displacement, force or stress of the
-    /// run is so large, or at its end so small, that squares of it, as energies
-    /// are, mean nothing.
+    /// run is so large, or at its end so small, that its square, as in
+    /// energies, overflows or underflows.
     void
     check_sizes(const bool at_end) const;
 
-    /// Remarks that qualify the results of the run, one sentence each. @p
-    /// state: at the end of the run. Collective.
+    /// Return remarks that qualify the results of the run, one sentence each.
+    /// @p state: at the end of the run. Collective.
     std::vector<std::string>
     remarks(const State<dim> &state) const;
 
-    /// The closing words but for the remarks. On all ranks.
+    /// Print the summary of the run without remarks. On all ranks.
     void
     print(std::ostream &out) const;
 
@@ -119,8 +119,8 @@ namespace Viscoplastic
       return run;
     }
 
-    /// Wall time of this process by phase, as run_phases names them; `set-up'
-    /// is that of the first mesh, later ones are part of the adaptation.
+    /// Wall time of this process by phase, see run_phases; `set-up' is that of
+    /// the first mesh, while later ones belong to the adaptation.
     std::map<std::string, double>
     seconds() const
     {
@@ -130,7 +130,7 @@ namespace Viscoplastic
       return result;
     }
 
-    /// The wall time that effects of the scene have taken so far.
+    /// The wall time spent on effects of the scene so far.
     RunBill
     bill() const;
 
@@ -142,30 +142,30 @@ namespace Viscoplastic
                              pilot_seconds + clock.wall_time();
     }
 
-    /// Wall time of the whole run, with the parts before restarts.
+    /// Wall time of the whole run, including parts before restarts.
     double
     elapsed_in_all() const
     {
       return earlier_seconds + elapsed();
     }
 
-    /// The error bar up to here as the progress shows it: over the energy norm,
-    /// or, in runs to a tolerance, over what that is relative to. Nothing
-    /// where there is none.
+    /// The estimated error so far for the progress: relative to the energy norm
+    /// or, in runs to a tolerance, to the size of the solution. Absent without
+    /// an estimate.
     std::optional<double>
     relative_error(const ErrorEstimate &errors) const;
 
-    /// Write to, or read from, an archive what adds up over the run.
+    /// Write or read the data that accumulate over the run.
     template <typename Archive>
     void
     exchange(Archive &archive);
 
   private:
-    /// Why the tolerance of the run has been missed, and by how much.
+    /// Return why, and by how much, the tolerance of the run has been missed.
     std::string
     remark_on_tolerance() const;
 
-    /// Warn of what makes the numbers of a step doubtful, once each.
+    /// Warn once of each cause of doubt; throws StepFailure for lost digits.
     void
     judge(const AcceptedStep<dim> &step, const StepQuantities<dim> &quantities);
 
@@ -174,14 +174,14 @@ namespace Viscoplastic
            const StepQuantities<dim> &quantities,
            const SolutionErrors      &errors);
 
-    /// The row of statistics.csv of a step: the only place that knows the names
-    /// of quantities, their units, and when a scene has them.
+    /// Make the row of statistics.csv of a step. Names and units of quantities,
+    /// and when a scene has them, are defined only here.
     StatisticsRow
     row(const AcceptedStep<dim>   &step,
         const StepQuantities<dim> &quantities,
         const SolutionErrors      &errors);
 
-    /// Add what the scene asks for at points and as integrals.
+    /// Add the requested values at points and integrals.
     void
     add_asked_for(const StepQuantities<dim> &quantities,
                   StatisticsRow             &row) const;
@@ -193,15 +193,15 @@ namespace Viscoplastic
     report_progress(const AcceptedStep<dim>   &step,
                     const StepQuantities<dim> &quantities);
 
-    /// Whether steps of this scene may be of backward Euler.
+    /// Whether steps of this scene may be backward Euler steps.
     bool
     may_be_implicit() const
     {
       return scene.is_implicit() || scene.is_implicit_beyond_the_limit();
     }
 
-    /// How far loads, reactions and friction are from adding up to zero,
-    /// relative to the largest force so far, or to what it is nothing beside.
+    /// The norm of the sum of loads, reactions and friction, which should be
+    /// zero, relative to the largest force so far or to a larger scale.
     double
     balance_defect(const StepQuantities<dim> &quantities) const
     {
@@ -218,27 +218,27 @@ namespace Viscoplastic
 
     const Discretization<dim>   *discretization = nullptr; // the present one
     std::vector<PointProbe<dim>> probes;
-    /// Null where not asked for.
+    /// Null unless requested.
     std::unique_ptr<FieldProbes<dim>>    point_fields;
     std::unique_ptr<FieldIntegrals<dim>> integrals;
-    /// Since t = 0, in the place of each integral that sums up over the steps.
+    /// Sums since t = 0 of those integrals that are summed over the steps.
     std::vector<double> dissipated;
 
     EnergyBalance balance;
     /// The largest load, reaction or friction force so far: the scale of
-    /// defects of balance, also where all forces pass through zero.
+    /// balance defects, also in steps in which all forces vanish.
     double       largest_force      = 0.;
     unsigned int contact_iterations = 0, linear_iterations = 0,
                  newton_iterations = 0, implicit_steps = 0;
     RunSummary<dim>    run;
     ActingEffects<dim> effects;
-    /// What the user has been told of steps, which is said once.
+    /// Subjects of warnings about steps, each of which is printed once.
     std::set<std::string> told;
 
     std::unique_ptr<Statistics> statistics;
     Progress                    progress;
-    /// Wall time by phase a step ago; and now, with the time in all, for a
-    /// record that comes later.
+    /// Wall time by phase at the last record, and, for a record that comes
+    /// later, at stop_clock(), with the total.
     std::map<std::string, double> last_seconds;
     std::optional<std::pair<std::map<std::string, double>, double>>
       stopped_clock;

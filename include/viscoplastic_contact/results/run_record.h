@@ -11,41 +11,40 @@
 
 namespace Viscoplastic
 {
-  /// `Output/Directory', or what it is by default; ends with a slash.
+  /// `Output/Directory' or its default; ends with a slash.
   std::string
   results_directory(const Parameters &parameters);
 
-  /// Make it. Throws ExcMessage.
+  /// Make the directory of results. Throws ExcMessage.
   void
   make_results_directory(const std::string &path);
 
-  /// Throws ExcMessage if the results in directory @p path, with @p n_lines
-  /// files of lines, would overwrite what somebody else keeps under their
-  /// names.
+  /// Throws ExcMessage if results in directory @p path, with @p n_lines files
+  /// of lines, would overwrite files that another program has written.
   void
   refuse_foreign_files(const std::string &path, const std::size_t n_lines);
 
-  /// Remove the files of lines that an earlier run has left behind the first
-  /// @p n_lines.
+  /// Remove files of lines beyond the first @p n_lines, which an earlier run
+  /// has written.
   void
   remove_other_lines(const std::string &path, std::size_t n_lines);
 
-  /// The costs of a run in run.json, which studies read.
+  /// The costs of a run for run.json, which is read by studies.
   struct RunCosts
   {
-    /// Wall time by phase, see run_phases; of a resumed run, of its last part.
+    /// Wall time by phase, see run_phases; after a restart, since then.
     std::map<std::string, double> seconds;
-    /// Seconds of the phase `contact' that friction takes, see RunBill.
+    /// Seconds of the phase `contact' due to friction, see RunBill.
     double friction = 0.;
     /// Memory of all ranks together in MB: before the run, and the largest.
     double first_memory = 0., peak_memory = 0.;
-    /// The sizes from which the solver of the last mesh was chosen.
+    /// The sizes by which the solver on the last mesh was chosen.
     SolverDemand solver_demand;
   };
 
-  /// Write what is needed to reproduce a run: parameters.prm and run.json, with
-  /// the errors of @p summary and with @p costs unless these are null, and with
-  /// the sentences that the run had for the user. On one rank.
+  /// Write parameters.prm and run.json, from which a run can be reproduced,
+  /// with the errors of @p summary and with @p costs unless null, and with the
+  /// remarks of the run. On one rank.
   template <int dim>
   void
   write_record(const Scene<dim>               &scene,

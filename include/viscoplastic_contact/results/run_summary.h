@@ -20,15 +20,15 @@
 
 namespace Viscoplastic
 {
-  /// A part of a run whose wall time is taken by itself.
+  /// A part of a run whose wall time is measured.
   struct RunPhase
   {
-    /// The name of the section of the timer of a run.
+    /// The name of the section in the timer of a run.
     std::string name;
-    /// What it is paid for, and what that is, for the lines at the end of a
-    /// run.
+    /// The effect that causes the time, and a description of the work, for the
+    /// lines at the end of a run.
     std::string effect, text;
-    /// Whether statistics.csv has its seconds in each step, as wall_<name>.
+    /// Whether statistics.csv has its time in each step, as wall_<name>.
     bool is_in_statistics;
   };
 
@@ -63,12 +63,12 @@ namespace Viscoplastic
 
   using namespace dealii;
 
-  /// The largest value over a run, and when it was reached.
+  /// The largest value over a run, and the time at which it was reached.
   struct Largest
   {
     double value = 0., t = 0.;
 
-    /// Take a value that is larger than those before; returns whether it is.
+    /// Update with a value; returns whether it is larger than all before.
     bool
     update(const double new_value, const double new_t)
     {
@@ -82,7 +82,7 @@ namespace Viscoplastic
 
 
 
-  /// The step in which something has been so for the first time.
+  /// The first step in which a condition holds.
   struct FirstStep
   {
     unsigned int n      = 0;
@@ -107,16 +107,16 @@ namespace Viscoplastic
 
 
 
-  /// The quantities of interest for the closing words of a run, as
-  /// doc/results.md defines them. Absent: what the scene does not have.
+  /// The results printed at the end of a run, as doc/results.md defines them.
+  /// Absent: what the scene does not have.
   template <int dim>
   struct RunSummary
   {
-    /// The end of the last step, and what the closing words have of it.
+    /// The end of the last step, and the values there.
     double                            t = 0.;
     std::vector<StatisticsRow::Entry> at_end;
     bool has_viscosity = false, has_flowed = false, has_friction = false;
-    /// The estimate by which an adaptive scene without error estimate refines.
+    /// The refinement estimate of an adaptive scene without error estimate.
     std::optional<double> error_estimate;
     /// The errors of a scene with error estimate.
     std::optional<ErrorSummary> errors;
@@ -124,17 +124,17 @@ namespace Viscoplastic
     std::string  quantity;
     ErrorSummary quantity_errors;
     /// With a quantity and no tolerance: the norms of the dual solution after
-    /// the steps, and their times.
+    /// steps, and the times of these.
     std::vector<double> dual_times, dual_norms;
-    /// The tolerance of a run that keeps one, and where prescribed
-    /// displacements jump, so that no error bar is true; absent: nowhere.
+    /// The tolerance of the run, if any; and a position where prescribed
+    /// displacements jump, if any, which invalidates error bars.
     std::optional<double>     tolerance;
     std::optional<Point<dim>> jump_position;
-    /// Whether curved bodies in contact have missed more of their geometry than
-    /// the whole solution is.
+    /// Whether the error by the geometry of curved bodies in contact has
+    /// exceeded the energy norm of the solution.
     bool has_coarse_curves = false;
 
-    /// The errors that a tolerance is for.
+    /// The errors to which a tolerance applies.
     const ErrorSummary &
     controlled_errors() const
     {
@@ -142,7 +142,7 @@ namespace Viscoplastic
     }
 
     /// Whether the tolerance is that of a quantity that has always been zero,
-    /// and not because curved bodies have missed each other.
+    /// unless the cause may be that curved bodies have missed each other.
     bool
     has_zero_quantity() const
     {
@@ -152,63 +152,63 @@ namespace Viscoplastic
 
     Largest displacement, strain, von_mises, pressure, slip_area, slip_rate,
       capped_volume, utilization;
-    /// In which the body has touched and slipped.
+    /// The first steps with contact and with slip.
     FirstStep first_touch, first_slip;
-    /// The part of the faces in bilateral contact on which the foundation
-    /// pulls.
+    /// The part of the faces in bilateral contact on which the foundation is in
+    /// tension.
     Largest tension_share;
     /// InterfaceSlide::largest().
     Largest slide;
-    /// The places of the largest displacement and the largest von Mises stress.
+    /// The positions of the largest displacement and von Mises stress.
     Point<dim> displacement_position, von_mises_position;
     /// The area of all friction points on the mesh on which slip_area was
-    /// reached.
+    /// largest.
     double friction_area = 0.;
-    /// With lagged Coulomb friction: sums over the steps of k times what
-    /// StepQuantities::friction_bounds has.
+    /// With lagged Coulomb friction: sums over the steps of k times the values
+    /// of StepQuantities::friction_bounds.
     double missed_bounds = 0., computed_bounds = 0.;
-    /// Sentences on the first steps whose solution may not be unique.
+    /// Sentences on the first steps with possibly several solutions.
     std::vector<std::string> doubtful_steps;
-    /// The largest k r, and where r was that large.
+    /// The largest k r, and the position of the largest r in that step.
     Largest    stiffness;
     Point<dim> critical_position;
-    /// The number of steps, and what step control did to them; absent where the
-    /// steps are those of the phases.
+    /// The number of steps; counts of step control follow below, absent where
+    /// the steps are those of the phases.
     unsigned int n_steps = 0;
-    /// Of the last mesh.
+    /// The number of cells of the last mesh.
     types::global_cell_index n_cells = 0;
-    /// Steps in which nothing has changed, which took no solve.
+    /// Steps in which nothing has changed and that needed no solve.
     unsigned int                unchanged_steps = 0;
     std::optional<StepCounts>   steps;
     std::optional<unsigned int> implicit_steps;
     /// The largest errors against an exact solution, and the largest norms of
-    /// that; zero without one.
+    /// the exact solution; zero without one.
     SolutionNorms largest_error, largest_exact;
 
-    /// Numbers have their units if @p units are declared, and places their
-    /// names.
+    /// Print the summary, with units if @p units are declared, and with @p
+    /// names of places.
     void
     print(std::ostream &out, const Units &units, const PlaceNames &names) const;
   };
 
 
 
-  /// The wall time of the effects of a scene in a run.
+  /// The wall time spent on the effects of a scene in a run.
   struct RunBill
   {
-    /// Seconds by phase, as run_phases names them; `set-up' is that of the
-    /// first mesh, later ones are part of the adaptation.
+    /// Seconds by phase, see run_phases; `set-up' is that of the first mesh,
+    /// while later ones belong to the adaptation.
     std::map<std::string, double> seconds;
-    /// Seconds of the whole run, and of its parts before a restart.
+    /// Seconds of this process, and of parts of the run before a restart.
     double total = 0., earlier = 0.;
     bool   has_viscosity = false;
     /// Seconds of the solves of all steps, and what they would have taken
-    /// without friction; the latter is absent where nothing can slip.
+    /// without friction; the latter is absent without friction.
     double                solves = 0.;
     std::optional<double> plain_solves;
 
-    /// The part of the phase `contact' that is friction's. What it is of the
-    /// solves of steps that have been accepted, it is of all.
+    /// The seconds of the phase `contact' due to friction: its share of the
+    /// solves in accepted steps is taken for that of the phase.
     double
     friction() const
     {
@@ -218,7 +218,7 @@ namespace Viscoplastic
       return contact->second * (1. - *plain_solves / solves);
     }
 
-    /// Effects that the scene does not have get no line.
+    /// Print a line for each effect that the scene has.
     void
     print(std::ostream &out) const;
   };

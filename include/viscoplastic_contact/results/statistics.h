@@ -10,14 +10,14 @@
 
 namespace Viscoplastic
 {
-  /// What a step has to record: for each quantity its name, its unit, its value
-  /// and whether the closing words of a run have it. Recorder::row() makes it,
-  /// and so is the one place that knows them; statistics.csv, its labels of
-  /// units and the closing words follow from it.
+  /// The record of a step: for each quantity its name, unit and value, and
+  /// whether it is printed at the end of a run. statistics.csv, its unit labels
+  /// and the final output are made from it; Recorder::row() alone defines the
+  /// quantities.
   class StatisticsRow
   {
   public:
-    /// For add(): the closing words have the value at the end of a run.
+    /// For add(): the value at the end of a run is printed.
     static constexpr bool printed = true;
 
     /// A number, or the components of a vector.
@@ -29,7 +29,7 @@ namespace Viscoplastic
       bool                is_vector;
       bool                is_printed;
 
-      /// The name of the column of a value: name_x, name_y (, name_z) for
+      /// The name of the column of a component: name_x, name_y (, name_z) for
       /// vectors.
       std::string
       column(const std::size_t value) const
@@ -65,8 +65,8 @@ namespace Viscoplastic
 
 
 
-  /// The beginning of a table whose rows begin with the number of a step: its
-  /// first line, and the rows of steps up to one.
+  /// The first line and the rows up to some step of a table whose rows begin
+  /// with the number of a step.
   struct TableBeginning
   {
     std::string    header;
@@ -77,15 +77,15 @@ namespace Viscoplastic
   TableBeginning
   beginning_of_table(const std::string &file, const unsigned int last_step);
 
-  /// Go on behind the beginning of a table. Throws ExcMessage.
+  /// Open a table behind this beginning, dropping the rest. Throws ExcMessage.
   std::ofstream
   append_to_table(const std::string &file, const TableBeginning &beginning);
 
 
-  /// A table written row by row as comma separated values: the first row fixes
-  /// the columns. Each row is flushed, so a run that is killed leaves what it
-  /// has computed. The first line has the names of the columns, with labels of
-  /// units such as ` [MPa]' behind them where the scene declares units.
+  /// A table of comma separated values. The first row defines the columns. Each
+  /// row is flushed, so that the rows of a run that is killed remain. The first
+  /// line has the names of the columns, followed by a blank and unit labels
+  /// such as [MPa] if the scene declares units.
   class Statistics
   {
   public:
@@ -95,17 +95,17 @@ namespace Viscoplastic
                const Units       &units,
                const unsigned int dim);
 
-    /// Go on after the row of step @p last_step of a file, whose first column
-    /// counts steps from 0; drops the rows after it. Throws ExcMessage if a row
-    /// up to it is missing, before anything changes.
+    /// Continue a file after the row of step @p last_step, whose first column
+    /// counts steps from 0; drops later rows. Throws ExcMessage if a row up to
+    /// that step is missing, before anything is changed.
     Statistics(const std::string &file, const unsigned int last_step);
 
-    /// Write a row; integers print as such. Throws ExcMessage if that fails,
-    /// e.g. on a full disk, or if the columns are not those of the rows before.
+    /// Write a row; integers print as such. Throws ExcMessage if writing fails,
+    /// if the columns differ from earlier ones, or if a value is not finite.
     void
     write(const StatisticsRow &row);
 
-    /// Put all rows to disk. Throws ExcMessage.
+    /// Flush all rows to disk. Throws ExcMessage.
     void
     synchronize();
 

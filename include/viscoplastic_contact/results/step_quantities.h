@@ -9,19 +9,19 @@
 
 namespace Viscoplastic
 {
-  /// Quantities of a step that are computed from its fields, for a row of
+  /// Quantities of a step that are computed from its fields for a row of
   /// statistics.csv.
   template <int dim>
   struct StepQuantities
   {
     StressSummary<dim> stress;
     FlowEnergies       flow;
-    /// The energy stored at the end of the step, and what of it is in springs.
+    /// The energy stored at the end of the step, and its part in springs.
     double stored_energy = 0., spring_energy = 0.;
     /// The work of loads, prescribed displacements and moving foundations in
     /// the step.
     double external_work = 0.;
-    /// Defects of the friction law, and the resultant friction force on the
+    /// Defects of the friction law, and the resulting friction force on the
     /// body; zero without friction.
     FrictionIdentities friction;
     Tensor<1, dim>     friction_force;
@@ -31,31 +31,31 @@ namespace Viscoplastic
     /// ContactFace::forces_by_boundary().
     std::map<types::boundary_id, typename ContactFace<dim>::BoundaryForces>
       contact_forces;
-    /// The reaction on each boundary and support with prescribed
-    /// displacements, and of springs.
+    /// The reaction on each boundary and support with prescribed displacements
+    /// or springs.
     std::map<types::boundary_id, Tensor<1, dim>> reactions;
-    /// Loads, reactions, friction and contact on the body, which add up to
-    /// zero, and the largest of them.
+    /// The sum of loads, reactions, friction and contact on the body, which
+    /// should be zero, and the largest of them.
     Tensor<1, dim> sum_of_forces;
     double         largest_force = 0.;
-    /// Where the sum is more than 1e-9 of that, what it may be small beside:
-    /// nodal forces of the body that cancel, or rounding; the sum of the nodal
-    /// loads without their signs; what rounding of displacements may have made
-    /// of the sum.
+    /// Set if the sum exceeds 1e-9 of the largest force: a scale that includes
+    /// nodal forces of the body that cancel, and rounding; the sum of absolute
+    /// nodal loads; the possible effect of rounding of displacements on the
+    /// sum.
     double force_scale = 0., load_size = 0., rounding_of_forces = 0.;
-    /// The largest length of a displacement, and the node that has it.
+    /// The largest length of a displacement, and the position of its node.
     double     max_displacement = 0.;
     Point<dim> displacement_position;
     /// eps_zz and N in generalized plane strain.
     double axial_strain = 0., axial_force = 0.;
-    /// The area on which bilateral contact pulls at the body.
+    /// The area on which bilateral contact is in tension.
     double tension_area = 0.;
     /// InterfaceSlide::largest(); zero without contact between bodies.
     double slide = 0.;
     /// The error of friction bounds that lag by a step.
     typename ContactFace<dim>::MissedBounds friction_bounds;
     /// The estimate by which an adaptive mesh is refined; zero before the first
-    /// one.
+    /// estimate.
     double                      refinement_estimate = 0.;
     std::vector<Tensor<1, dim>> point_displacements;
     /// The values of `Output/Point fields' and `Output/Integrals'.
@@ -64,15 +64,15 @@ namespace Viscoplastic
 
 
 
-  /// The quantities of a step that leads from the state @p old, without the
-  /// values at points and the integrals that a scene asks for. Collective.
+  /// Compute the quantities of a step from @p old, without values at points and
+  /// integrals. Collective.
   template <int dim>
   StepQuantities<dim>
   measure_step(const Discretization<dim> &discretization,
                const EvaluatedState<dim> &old,
                const AcceptedStep<dim>   &step);
 
-  /// Collective.
+  /// Return the energies of a state on its mesh. Collective.
   template <int dim>
   EnergiesOnMesh
   energies_on_mesh(const Discretization<dim> &discretization,

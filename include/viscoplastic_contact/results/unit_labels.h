@@ -8,23 +8,23 @@
 
 namespace Viscoplastic
 {
-  /// The physical quantity of a field of the body or of the contact face, or of
-  /// one of its components, given its name; a pure number if it has no unit.
+  /// The physical quantity of a field of the body or of the boundary, or of one
+  /// of its components, given its name; a pure number if it has no unit.
   Quantity
   quantity_of_field(const std::string &name);
 
-  /// What an integral of a quantity over a boundary or a material is.
+  /// The physical quantity of an integral over a boundary or a material.
   Quantity
   integrated(const Quantity quantity, const bool is_of_boundary);
 
-  /// The estimates of cells are a root of energies, or of the quantity of
-  /// interest, which may be anything.
+  /// The quantity of cell-wise estimates: roots of energies or, for a quantity
+  /// of interest, of any unit.
   template <int dim>
   Quantity
   quantity_of_estimator(const Scene<dim> &scene);
 
-  /// What the results of a scene have behind the name of a field: " [MPa]", or
-  /// nothing where the scene declares no units.
+  /// The label after the name of a field in results: " [MPa]", or nothing if
+  /// the scene declares no units.
   template <int dim>
   std::string
   label_of_field(const Scene<dim> &scene, const std::string &name);

@@ -11,8 +11,8 @@
 namespace Viscoplastic
 {
   /// Tells the user what is simulated: the effects of a scene, the size of its
-  /// mesh, the linear solver, and what is unusual about them. What may come up
-  /// again on later meshes is said once.
+  /// mesh, the linear solver, and warnings about them. Warnings that may recur
+  /// on later meshes are printed once.
   template <int dim>
   class Announcer
   {
@@ -24,12 +24,12 @@ namespace Viscoplastic
     void
     announce(const Scene<dim> &scene);
 
-    /// Announce the kinks of data at which steps will end.
+    /// Announce the kinks and jumps of data at which steps will end.
     void
     announce(const KinksOfScene &found);
 
-    /// Announce the largest displacement @p largest_u0 that equilibrium at t =
-    /// 0 has caused.
+    /// Announce the largest displacement @p largest_u0 due to equilibrium at t
+    /// = 0.
     void
     announce_equilibrium(const Scene<dim> &scene, const double largest_u0);
 
@@ -37,15 +37,15 @@ namespace Viscoplastic
     void
     announce_stage(const Scene<dim> &scene);
 
-    /// Announce the first mesh, and what no mesh mends. Collective.
+    /// Announce the first mesh and warn of what no mesh can cure. Collective.
     void
     announce(const Discretization<dim> &discretization);
 
-    /// Name the frictional boundaries without friction points. Collective.
+    /// Name contact boundaries whose nodes are all held otherwise. Collective.
     void
     warn_of_held_faces(const Discretization<dim> &discretization);
 
-    /// Announce the linear solver once; @p name is empty while there is none.
+    /// Announce the linear solver once; @p name is empty before its first use.
     void
     announce_solver(const std::string &name)
     {
@@ -61,7 +61,7 @@ namespace Viscoplastic
     void
     advise_on_ranks(const Discretization<dim> &discretization);
 
-    /// Warn of prescribed displacements that contradict each other. Collective.
+    /// Warn of contradictory prescribed displacements. Collective.
     void
     warn_of_jumps(const AdmissibleSpace<dim> &space);
 

@@ -6,7 +6,7 @@
 
 namespace Viscoplastic
 {
-  /// The arguments of the program, as options and files.
+  /// The options and files among the arguments of the program.
   struct CommandLine
   {
     enum class Task
@@ -28,10 +28,10 @@ namespace Viscoplastic
     bool                     quiet = false;
     /// Whether the task print_scene adds mean values of the data.
     bool with_means = false;
-    /// Whether each step gets a line, also those like the one before.
+    /// Whether each step is printed, even if it is like the previous one.
     bool verbose = false;
-    /// Whether to go on from a checkpoint: not at all, from one that must be
-    /// there, or from one if there is any.
+    /// Whether to continue from a checkpoint: no; yes, throwing if there is
+    /// none; or automatically, if there is one.
     enum class Restart
     {
       no,
@@ -46,10 +46,10 @@ namespace Viscoplastic
   /// Read the arguments, without the program's name. Throws ExcMessage with a
   /// sentence for the user.
   ///
-  /// Boost.Program_options would make this a tenth shorter, for a library more:
-  /// it finds what is unknown or missing, but which options go together, and
-  /// the sentences, remain. Its own do not say what is missing, and it shows
-  /// options with a value that may be left out as `[=arg(=value)]'.
+  /// Boost.Program_options would save a tenth of the code at the price of a
+  /// library: it finds unknown and missing options, but checks of combinations
+  /// and most sentences would remain, since its messages do not tell what is
+  /// missing. It prints optional values as `[=arg(=value)]'.
   CommandLine
   read_command_line(const std::vector<std::string> &arguments);
 
@@ -57,11 +57,11 @@ namespace Viscoplastic
   std::string
   help_text();
 
-  /// The text that the program prints without arguments: how to begin.
+  /// The text that the program prints without arguments: first steps.
   std::string
   guide_text();
 
-  /// Program, version, revision, and what it was built with.
+  /// Name, version and revision of the program, and version of deal.II.
   std::string
   version_text();
 } // namespace Viscoplastic

@@ -8,19 +8,20 @@
 namespace Viscoplastic
 {
   /// Estimate the size of a scene's solution by a run without files on its
-  /// first mesh, with at most eight steps a phase. The argument stays in use.
+  /// first mesh, with at most 8 steps per phase. Keeps a reference to @p
+  /// parameters.
   template <int dim>
   PilotRun
   pilot_run(const Parameters &parameters);
 
-  /// Run a scene in as many passes as it takes. To the tolerance of a quantity
-  /// of interest on adaptive meshes that may be several: what creeps or slips
-  /// remembers each mesh, as the estimate of a quantity does not, so that the
-  /// mesh a pass has come to is the first one of the next. The displacement of
-  /// a body that creeps remembers most, and a pass that needs another mesh ends
-  /// at once. Each pass writes its files over those of the one before: the pass
-  /// that turns out to be right is the run. Arguments and the result are those
-  /// of ViscoplasticContact::run().
+  /// Run a scene in as many passes as it takes. A run to the tolerance of a
+  /// quantity of interest on adaptive meshes may take several: creep and slip
+  /// depend on all meshes so far, which the estimate of a quantity neglects.
+  /// Therefore each pass begins on the final mesh of the previous one. If the
+  /// body creeps, whose displacement depends most on earlier meshes, a pass for
+  /// any quantity but the work of friction ends as soon as its mesh changes.
+  /// Each pass overwrites the files of the previous one. Arguments and result
+  /// are those of ViscoplasticContact::run().
   template <int dim>
   std::string
   run_in_passes(const Parameters          &parameters,

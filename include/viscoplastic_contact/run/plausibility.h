@@ -9,41 +9,41 @@
 
 namespace Viscoplastic
 {
-  // What --check tells of the data of a scene, so that a slip in a unit is seen
-  // before the run.
+  // Plausibility checks of the data by --check, to find wrong units before a
+  // run.
 
-  /// The largest stress that the data of a scene give, and which of them.
+  /// The largest stress that the data of a scene impose, and its origin.
   struct LargestStress
   {
     double      value = 0.;
     std::string origin;
-    /// Whether it is a load; not of friction bounds.
+    /// Whether a load causes the stress, rather than a friction bound.
     bool is_load = false;
-    /// Its time: of a thermal stress that of the highest temperature.
+    /// The time of the highest temperature, for a thermal stress; else 0.
     double t = 0.;
   };
 
-  /// From the initial stress, tractions, pressures and normal stresses, the
-  /// body force times the size of the body, prescribed displacements times
-  /// Young's modulus over that size; where there is none of these, from
-  /// friction bounds. Of places and times that stand for all. Collective.
+  /// Return the largest of initial stress, tractions, pressures, normal
+  /// stresses, body force times size of the body, prescribed displacements
+  /// times Young's modulus over size, and thermal stress; if all are zero, the
+  /// largest friction bound. Data are sampled in space and time. Collective.
   template <int dim>
   LargestStress
   largest_given_stress(const Discretization<dim> &discretization);
 
-  /// A line for each material: elastic moduli, law with its parameters, and how
-  /// fast that law relaxes a uniaxial stress sigma of the size of @p stress,
-  /// |sigma|/|G|, and 2/r there of what is added later. Collective.
+  /// Print a line for each material: elastic moduli, law with parameters, the
+  /// time |sigma|/|G| in which the law relaxes a uniaxial stress of the size of
+  /// @p stress, and, if the material is added later, the limit 2/r. Collective.
   template <int dim>
   void
   describe_materials(const Discretization<dim> &discretization,
                      const LargestStress       &stress,
                      std::ostream              &out);
 
-  /// Sentences about a material that has been left at its defaults although the
-  /// scene has loads, and, where units are declared, about one that is powers
-  /// of ten away from all known ones, or that loads would strain far beyond
-  /// small strains. Collective.
+  /// Return sentences about materials with default moduli in scenes with loads,
+  /// contact that cannot balance the loads, large friction coefficients and
+  /// overlaps, and, if units are declared, materials powers of ten off all
+  /// known ones and loads with large strains. Collective.
   template <int dim>
   std::vector<std::string>
   implausible_data(const Discretization<dim> &discretization,

@@ -17,22 +17,22 @@
 
 namespace Viscoplastic
 {
-  /// The files of a run: fields, values along lines, statistics and the record
-  /// of the run in the directory of the results, and checkpoints; and when they
-  /// are written. Member functions are collective and throw ExcMessage with a
-  /// sentence for the user, on all ranks.
+  /// The files of a run and the times at which they are written: fields, values
+  /// along lines, statistics, the record of the run, and checkpoints. Member
+  /// functions are collective and throw ExcMessage with a sentence for the user
+  /// on all ranks.
   template <int dim>
   class RunFiles
   {
   public:
-    /// Locks the directories, as far as they exist. What is written is the
-    /// accepted state of @p run; all arguments stay in use.
+    /// Locks the directories that exist. The accepted state of @p run is
+    /// written; keeps references to all arguments.
     RunFiles(RunState<dim> &run,
              Console       &console,
              TimerOutput   &timer,
              const MPI_Comm communicator);
 
-    /// The checkpoint to go on from, if the run is to go on and there is one.
+    /// The newest valid checkpoint, if @p restart asks for one and it exists.
     std::optional<CheckpointManifest>
     find_checkpoint(const CommandLine::Restart restart);
 
@@ -45,16 +45,16 @@ namespace Viscoplastic
       return output->directory();
     }
 
-    /// Begin all files anew.
+    /// Begin all files anew, and remove checkpoints of earlier runs.
     void
     begin();
 
     /// Continue the files after the accepted state, with fields at @p
-    /// output_times; removes what is later.
+    /// output_times; removes later rows, fields and checkpoints.
     void
     resume(const std::vector<double> &output_times);
 
-    /// Set the mesh on which the next functions take the accepted state.
+    /// Set the mesh of the accepted state. Keeps a reference to it.
     void
     set_mesh(const Discretization<dim> &discretization)
     {
@@ -62,7 +62,7 @@ namespace Viscoplastic
       lines.set_mesh(discretization);
     }
 
-    /// From now on signals end the run after a checkpoint.
+    /// Handle signals from here on: they end the run after a checkpoint.
     void
     begin_steps()
     {
@@ -81,7 +81,7 @@ namespace Viscoplastic
       const parallel::distributed::Triangulation<dim> &triangulation,
       const TimeStepper<dim>                          &time_stepper);
 
-    /// Wait for files that are being written.
+    /// Wait for files that are being written, and stop handling signals.
     void
     finish()
     {
@@ -90,8 +90,7 @@ namespace Viscoplastic
       signals.reset();
     }
 
-    /// Add what is known at the end, costs and remarks to the record of the
-    /// run.
+    /// Add final results, costs and @p remarks to the record of the run.
     void
     close(const std::vector<std::string> &remarks);
 
@@ -101,8 +100,8 @@ namespace Viscoplastic
     void
     lock();
 
-    /// Remove the checkpoints of an earlier run, which go with its results, and
-    /// make sure that there is a place for those of this one.
+    /// Remove the checkpoints of an earlier run, whose results are overwritten,
+    /// and make a directory for those of this run if it has any.
     void
     begin_checkpoints();
 

@@ -10,17 +10,17 @@
 
 namespace Viscoplastic
 {
-  /// What programs that vary a scene need to know of it, as a JSON object:
+  /// Return a JSON object for programs that vary a scene:
   ///
   ///   version, revision, ranks     of the program
-  ///   file, directory, dimension   of the scene; `directory' is where its
-  ///                                results go
+  ///   file, directory, dimension   of the scene; `directory' is for results
   ///   values                       of every entry, without `automatic' where
   ///                                that is replaced when parameters are read
   ///   files                        a checksum of all files that belong to it
   ///   cells, h                     of its first mesh; h is the largest
   ///                                diameter of a cell over sqrt(dim)
   ///   volumetric_integration       what `automatic' stands for
+  ///   names                        of places, if any
   ///
   /// and @p with_means, see SceneData:
   ///
@@ -36,7 +36,7 @@ namespace Viscoplastic
                 const bool        with_means,
                 const MPI_Comm    communicator);
 
-  /// The isotropic tensor that is nearest to a stiffness in the Frobenius norm
+  /// Return the isotropic tensor nearest to a stiffness in the Frobenius norm
   /// of fourth-order tensors, which does not depend on the axes.
   Stiffness
   nearest_isotropic(const Stiffness &stiffness);

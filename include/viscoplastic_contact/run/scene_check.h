@@ -7,12 +7,12 @@
 
 namespace Viscoplastic
 {
-  // What is known of a scene without solving anything. All functions are
-  // collective and throw ExcMessage with a sentence for the user.
+  // Checks of a scene without solving it. All functions are collective and
+  // throw ExcMessage with a sentence for the user.
 
-  /// Make the first mesh, hold the scene against it, and let steps that are
-  /// chosen by their error end at kinks and jumps of the data. @p announcer is
-  /// null if nothing is to be said.
+  /// Make the first mesh, check the scene against it, and let steps of
+  /// controlled size end at kinks and jumps of the data. @p announcer is null
+  /// if nothing is to be printed.
   template <int dim>
   void
   make_first_mesh(Scene<dim>                                &scene,
@@ -20,23 +20,23 @@ namespace Viscoplastic
                   StepControl                               &control,
                   Announcer<dim>                            *announcer);
 
-  /// Refuse stages of construction that do not fit the scene.
+  /// Throw unless a discretization exists in all stages of construction.
   template <int dim>
   void
   check_stages(const FiniteElement<dim> &fe,
                DoFHandler<dim>          &dof_handler,
                Scene<dim>               &scene);
 
-  /// Refuse initial data that violate (2.12), and set the multipliers of those
-  /// that do not.
+  /// Refuse initial data that violate (2.12); otherwise set their contact
+  /// multipliers.
   template <int dim>
   void
   check_compatibility(const Discretization<dim> &discretization,
                       State<dim>                &initial,
                       const Load<dim>           &load);
 
-  /// Refuse a first step beyond the stability limit, before anything is
-  /// written, and warn of later ones. Evaluates the rate of @p initial.
+  /// Refuse a first step beyond the stability limit before any file is written,
+  /// and warn of later ones. Sets the rate of @p initial.
   template <int dim>
   void
   check_steps(const Discretization<dim> &discretization,
@@ -44,9 +44,9 @@ namespace Viscoplastic
               Console                   &console,
               EvaluatedState<dim>       &initial);
 
-  /// Everything that can be known without solving: validates the scene with its
-  /// mesh, initial data and the data of all times, and prints size, solver and
-  /// what memory they need.
+  /// Perform all checks that need no solution: those of the scene with its
+  /// mesh, initial data and data at sampled times; print size, solver and
+  /// expected memory.
   template <int dim>
   void
   check_scene(const Parameters &parameters, Console &console);

@@ -12,56 +12,55 @@
 
 namespace Viscoplastic
 {
-  /// What follows from the data of a scene and its mesh. Means are expressions
-  /// of x and t, each component of a vector by itself, that can take the place
-  /// of those of the parameter file; nothing for data that are their own means.
-  /// Those over space are collective. They throw ExcMessage for what cannot be
-  /// parsed.
+  /// Means of the data of a scene over space or time, and properties of its
+  /// mesh. Means are expressions of x and t, by component of a vector, which
+  /// can replace those of the parameter file; absent if data equal their means.
+  /// Means over space are collective. Throws ExcMessage for unparsable data.
   class SceneData
   {
   public:
     virtual ~SceneData() = default;
 
-    /// The mean over the faces of a boundary, as an expression of t that agrees
-    /// with it at the ends of all steps and is linear between them.
+    /// The mean over a boundary, as an expression of t that is exact at the
+    /// ends of all steps and linear between them.
     virtual std::optional<std::string>
     over_boundary(const std::string &components,
                   const unsigned int id) const = 0;
 
-    /// The mean over the cells of a material, or over all of them, likewise.
+    /// The mean over the cells of a material, or over all cells, likewise.
     virtual std::optional<std::string>
     over_body(const std::string                &components,
               const std::optional<unsigned int> material = {}) const = 0;
 
-    /// The mean over the run, as an expression of x: by Gauss' rule with two
-    /// points in each step where the datum is the same everywhere, else in
-    /// eighths of each phase.
+    /// The mean over the run, as an expression of x. Data that are uniform in
+    /// space are integrated by two Gauss points per step, others by two Gauss
+    /// points in each of up to eight parts of a phase.
     virtual std::optional<std::string>
     over_time(const std::string &components) const = 0;
 
-    /// The area of a boundary, in the plane its length. Collective.
+    /// The area of a boundary; in 2D its length. Collective.
     virtual double
     area(const unsigned int id) const = 0;
 
-    /// `Material/Volumetric integration', or what `automatic' stands for.
+    /// `Material/Volumetric integration', with `automatic' resolved.
     /// Collective.
     virtual VolumetricIntegration
     volumetric_integration() const = 0;
 
-    /// The data of a scene on its first mesh. Collective.
+    /// Return the data of a scene on its first mesh. Collective.
     static std::unique_ptr<const SceneData>
     of(const Parameters &scene, const MPI_Comm communicator);
   };
 
 
-  /// A number as a text that gives the same number.
+  /// Return a number as text with all of its digits.
   std::string
   exact(const double value);
 
 
-  /// The function that is linear between these values, and constant before and
-  /// linear after them, as an expression of t. Points on a line between others
-  /// are left out.
+  /// Return the function of t that interpolates these values linearly as an
+  /// expression; constant before the first time and linear after the last.
+  /// Points on a line between others are left out.
   std::string
   piecewise_linear(const std::vector<double> &times,
                    const std::vector<double> &values);

@@ -10,10 +10,10 @@
 
 namespace Viscoplastic
 {
-  /// Carries the accepted state of a run to another discretization of the body,
-  /// where it finds its equilibrium while friction holds: the next step lets it
-  /// slip. Construct one of the classes below on the old discretization, make
-  /// the new one, then carry(). Constructors and functions are collective.
+  /// Transfers the accepted state of a run to another discretization and
+  /// restores equilibrium with sticking friction; the next step lets it slip.
+  /// Construct a derived class on the old discretization, make the new one,
+  /// then call carry(). Constructors and functions are collective.
   template <int dim>
   class StateCarrier
   {
@@ -22,12 +22,12 @@ namespace Viscoplastic
     EnergiesOnMesh energies;
 
   protected:
-    /// @p error_estimator is null if there is none.
+    /// @p error_estimator: null if errors are not estimated.
     StateCarrier(const ErrorEstimator<dim> *error_estimator,
                  const Discretization<dim> &discretization,
                  const EvaluatedState<dim> &accepted);
 
-    /// What comes after the fields of the state are there. @p loss and
+    /// Reset the rate and update the errors of a transferred state. @p loss and
     /// @p history: see ErrorEstimator::change_mesh().
     void
     complete(const Discretization<dim> &discretization,
@@ -36,14 +36,14 @@ namespace Viscoplastic
              EvaluatedState<dim>       &accepted) const;
 
     const ErrorEstimator<dim> *error_estimator;
-    /// The density of the multipliers at the nodes; empty without contact
+    /// The density of the contact multipliers at nodes; empty without contact
     /// points.
     DistributedVector density;
   };
 
 
 
-  /// Carries a state to another mesh, whose cells have been marked.
+  /// Transfers a state to the mesh for which cells have been marked.
   template <int dim>
   class MeshChange : public StateCarrier<dim>
   {
@@ -67,7 +67,7 @@ namespace Viscoplastic
 
 
 
-  /// Carries a state to another stage of construction: materials come and go.
+  /// Transfers a state to a stage of construction with other materials.
   template <int dim>
   class StageChange : public StateCarrier<dim>
   {

@@ -22,22 +22,22 @@
 
 namespace Viscoplastic
 {
-  /// The expected size of the solution and the number of steps, which a run to
-  /// a tolerance needs before its first step.
+  /// The expected size of the solution, and other data that a run to a
+  /// tolerance needs before its first step.
   struct Expectation
   {
-    /// About how large the solution becomes, in the energy norm or by its
-    /// quantity of interest. Zero, and @p failure says why, if nobody knows.
+    /// The expected size in the energy norm or of the quantity of interest;
+    /// zero if unknown, with the reason in @p failure.
     double      size = 0.;
     std::string failure;
-    /// The norms of the dual solution of a quantity, and their times.
+    /// Norms of the dual solution of a quantity at the given times.
     std::vector<double> dual_times, dual_norms;
-    /// How often the first mesh has to be refined before the quantity of
-    /// interest is not zero.
+    /// The number of refinements of the first mesh that make the quantity of
+    /// interest nonzero.
     unsigned int refinements = 0;
   };
 
-  /// Finds that out. Collective.
+  /// Computes the expectation. Collective.
   using PilotRun = std::function<Expectation()>;
 
 
@@ -58,30 +58,30 @@ namespace Viscoplastic
   class ViscoplasticContact
   {
   public:
-    /// @p pilot_run is called in runs to a tolerance only. Throws ExcMessage
-    /// with a sentence for the user, as all functions do.
+    /// @p pilot_run is called in runs to a tolerance only. This and all member
+    /// functions throw ExcMessage with a sentence for the user.
     ViscoplasticContact(const Parameters &parameters,
                         Console          &console,
                         const PilotRun   &pilot_run);
 
-    /// Simulate, from the start or from a checkpoint; a pass that needs another
-    /// one ends without closing words. Returns a sentence if a signal has ended
-    /// the run early, after a checkpoint.
+    /// Simulate from the start or from a checkpoint. Returns a sentence if a
+    /// signal has ended the run early, after a checkpoint. If another pass is
+    /// needed, the final output is omitted.
     std::string
     run(const CommandLine::Restart restart = CommandLine::Restart::no);
 
-    /// Run without files and without the words at the beginning, in one pass;
-    /// returns what is known at the end.
+    /// Run in one pass, without files and introductory output; returns the
+    /// summary at the end.
     RunSummary<dim>
     run_without_files();
 
-    /// Whether the pass that has ended is not the run: it has changed its mesh
-    /// where only the mesh from the beginning will do, see run_in_passes().
+    /// Whether the finished pass has to be repeated on its final mesh, since
+    /// its mesh changed, see run_in_passes().
     bool
     needs_another_pass() const;
 
-    /// Begin on the mesh that another pass has come to, when this one runs, and
-    /// count its time as that of a pilot run.
+    /// Start on the final mesh of an @p earlier pass when this one runs, and
+    /// count the time of that pass as that of a pilot run.
     void
     follow(const ViscoplasticContact<dim> &earlier);
 
@@ -92,65 +92,64 @@ namespace Viscoplastic
       return accepted.state.t >= scene.schedule.end_time();
     }
 
-    /// Everything up to the initial state.
+    /// Do all work before the first step.
     void
     begin();
-    /// The initial state on the first mesh, and what has to be known before the
-    /// first step.
+    /// Make the initial state on the first mesh and perform the checks before
+    /// the first step.
     void
     begin_state();
-    /// Initial data, (3.20), on meshes that become finer until they resolve
+    /// Set the initial data, (3.20), refining the first mesh until it resolves
     /// them.
     void
     set_initial_state();
-    /// Record and write the initial state unless that has been done: at once,
-    /// or, where the
-    /// first step may refine the mesh and begin anew, once it has been made.
+    /// Record and write the initial state, once. This is called before the
+    /// first step, or after it if the first step may refine the mesh and start
+    /// anew.
     void
     record_initial_state();
 
     /// Make a step from the accepted state.
     AcceptedStep<dim>
     next_step();
-    /// Make all steps up to the end. Returns a sentence if a signal has ended
-    /// the run early.
+    /// Make all steps. Returns a sentence if a signal has ended the run.
     std::string
     make_steps();
 
     /// Make everything that depends on the mesh.
     void
     set_up();
-    /// Change the mesh if the estimate of the accepted state says so.
+    /// Change the mesh if the error estimate of the accepted state demands it.
     void
     adapt_mesh();
     /// Refine the mesh of the accepted state if it is too coarse for a step
-    /// from there. Returns whether it has been, and the step is to be repeated.
+    /// from there. Returns whether it was and the step has to be repeated.
     bool
     refine_for(const AcceptedStep<dim> &step);
-    /// Refine the first mesh if MeshController::mark_first() says so.
+    /// Refine the first mesh where MeshController::mark_first() marks cells.
     bool
     refine_first_mesh(const double          estimate,
                       const double          allowed,
                       const Vector<double> &squared_indicators);
-    /// Change the mesh as its cells are marked.
+    /// Change the mesh according to its marked cells.
     void
     change_mesh();
     /// Change the mesh before the first step: projects the initial data of the
-    /// scene anew.
+    /// scene to the new mesh.
     void
     begin_on_finer_mesh();
     /// Begin the next stage of construction.
     void
     enter_next_stage();
 
-    /// Go on from a checkpoint: what begin() does, and all steps up to there.
+    /// Continue from a checkpoint, in the place of begin() and earlier steps.
     void
     resume(const CheckpointManifest &checkpoint);
-    /// Print the closing words and complete the record of the run.
+    /// Print the final output and complete the record of the run.
     void
     close();
 
-    // What is simulated.
+    // The problem and its mesh.
     const MPI_Comm                            communicator;
     const Parameters                         &parameters;
     Scene<dim>                                scene;
@@ -158,26 +157,26 @@ namespace Viscoplastic
     const FESystem<dim>                       fe; // of V_h
     DoFHandler<dim>                           dof_handler;
 
-    // How meshes and steps are chosen.
+    // Control of meshes and steps.
     const PilotRun                       pilot_run;
     std::optional<ErrorBudget>           budget; // of a tolerance
     StepControl                          control;
     MeshController<dim>                  mesh_controller;
     std::unique_ptr<ErrorEstimator<dim>> error_estimator; // null if not wanted
 
-    // Made anew on each mesh.
+    // Constructed anew on each mesh.
     std::unique_ptr<Discretization<dim>> discretization;
     std::unique_ptr<TimeStepper<dim>>    time_stepper;
 
     /// The position of the run in its passes.
     PassState pass;
 
-    /// The last accepted state, and the report of the first equilibrium.
+    /// The last accepted state, and the report of the equilibrium at t = 0.
     EvaluatedState<dim> accepted;
     ContactReport       initial_report;
     bool                has_recorded_initial_state = false;
 
-    // What is said and kept.
+    // Messages, timing and files.
     Console                     &console;
     std::ostream                &out; // of the console
     Announcer<dim>               announcer;

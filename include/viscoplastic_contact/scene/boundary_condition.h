@@ -23,27 +23,27 @@ namespace Viscoplastic
   template <int dim>
   struct BoundaryCondition
   {
-    /// Parses all entries, also those that it does not use. Throws ExcMessage
-    /// naming the entry. If there is a @p solution that makes the data, what
-    /// follows from it must not be given.
+    /// Parse all entries, including those that the role and laws do not use.
+    /// Throws ExcMessage naming the entry. Data that follow from @p solution,
+    /// if there is one, must not be given.
     BoundaryCondition(const types::boundary_id  id,
                       const BoundaryParameters &parameters,
                       const ExactSolution<dim> *solution = nullptr);
 
-    /// Complete the data with what follows from the solution and the normal.
+    /// Set the data that follow from the solution and the normal.
     void
     derive_data();
 
     types::boundary_id id;
     BoundaryRole       role;
-    /// The boundary of another body that is the foundation. Displacements and
-    /// the gap below are then relative to it.
+    /// The boundary of another body that is the foundation; displacements and
+    /// the gap below are then relative to that body.
     std::optional<types::boundary_id> against;
-    /// Role contact; null in others.
+    /// The laws of the role contact; null for other roles.
     const ContactLaw  *contact_law  = nullptr;
     const FrictionLaw *friction_law = nullptr;
 
-    /// Role displacement: the given components; empty ones are free.
+    /// Role displacement: the prescribed components; absent ones are free.
     std::array<std::optional<Expression<dim>>, dim> displacement;
     /// Roles traction and displacement (free components): the given part of the
     /// traction F, and the pressure p, which adds -p nu. Absent where
@@ -55,17 +55,17 @@ namespace Viscoplastic
     std::optional<Expression<dim>> normal_stiffness, tangential_stiffness;
     /// The gap g of unilateral contact; absent where identically zero.
     std::optional<Expression<dim>> given_gap;
-    /// Where the foundation gives way, the factor k(x) of its pressure law.
+    /// The factor k(x) of the pressure law of a compliant foundation.
     std::optional<Expression<dim>> given_compliance;
     PressureLaw                    pressure_law;
-    /// d of bilateral contact, u_nu = d, or added to the gap; absent where
-    /// identically zero.
+    /// d in u_nu = d of bilateral contact; in unilateral contact it is added to
+    /// the gap. Absent where identically zero.
     std::optional<Expression<dim>> foundation_displacement;
-    /// The motion w of the foundation that slip is relative to; absent at rest.
+    /// The foundation motion w, relative to which u slips; absent at rest.
     std::optional<VectorExpression<dim>> foundation_motion;
-    /// The entries of the friction law, in its order.
+    /// The data of the friction law, in the order of its entries.
     std::vector<Expression<dim>> friction_data;
-    /// S of the law given normal stress.
+    /// S of the contact law `given normal stress'.
     std::optional<Expression<dim>> normal_stress;
     /// The factor of friction bounds as a function of the slip rate; absent
     /// where it is one.
@@ -73,13 +73,13 @@ namespace Viscoplastic
     /// The exact solution from which the data are computed; null if they are
     /// given.
     const ExactSolution<dim> *solution;
-    /// The outward unit normal of a flat symmetry or contact piece; in
-    /// unilateral contact the direction into the foundation.
+    /// The outward unit normal of a flat symmetry or contact boundary; if
+    /// given, the direction into the foundation.
     Tensor<1, dim> normal;
-    /// Whether the normal is given, so that the piece may be curved.
+    /// Whether `Foundation normal' is given; the boundary may then be curved.
     bool normal_is_given = false;
-    /// Whether the piece is curved and has normals at its nodes instead, see
-    /// SurfaceNormals: only in contact with another body.
+    /// Whether the boundary is curved and in contact with another body: normals
+    /// are then those at its nodes, see SurfaceNormals.
     bool normal_varies = false;
 
     /// Whether u_nu is prescribed here.
@@ -97,7 +97,7 @@ namespace Viscoplastic
       return is_of_kind(ContactLaw::Kind::given_stress);
     }
 
-    /// Whether contact opens and closes, on a foundation that is rigid or not.
+    /// Whether contact opens and closes, on a rigid or a compliant foundation.
     bool
     is_unilateral() const
     {
@@ -111,7 +111,7 @@ namespace Viscoplastic
       return contact_law != nullptr && contact_law->make;
     }
 
-    /// The factor of its pressure law. Throws ExcMessage where it is negative.
+    /// The factor k of the pressure law. Throws ExcMessage where k is negative.
     double
     compliance(const Point<dim> &x) const;
 
@@ -138,7 +138,7 @@ namespace Viscoplastic
                                         0.);
     }
 
-    /// Whether nodes have contact points here: friction or obstacles.
+    /// Whether nodes are contact points, with friction or unilateral contact.
     bool
     has_contact_points() const
     {
@@ -151,8 +151,7 @@ namespace Viscoplastic
       return friction_law != nullptr && !friction_law->entries.empty();
     }
 
-    /// Whether the friction bound is zero by its formula, everywhere and
-    /// always.
+    /// Whether all data of the friction bound are identically zero.
     bool
     friction_vanishes() const
     {
@@ -162,7 +161,7 @@ namespace Viscoplastic
                          [](const auto &datum) { return datum.is_zero(); });
     }
 
-    /// Whether all of u is prescribed here: glued_displacement().
+    /// Whether all of u is prescribed here by glued_displacement().
     bool
     is_glued() const
     {
@@ -191,22 +190,21 @@ namespace Viscoplastic
       return normal_stiffness || tangential_stiffness;
     }
 
-    /// K = k_n nu nu + k_t (I - nu nu), of which springs add -K u to the force
-    /// per area, at a point with this outward normal of the face. Throws
-    /// ExcMessage where a stiffness is negative.
+    /// Return K = k_n nu nu + k_t (I - nu nu) at a point with this outward
+    /// normal nu; springs add -K u to the force per area. Throws ExcMessage
+    /// where a stiffness is negative.
     SymmetricTensor<2, dim>
     spring_stiffness(const Point<dim>     &x,
                      const Tensor<1, dim> &outward_normal) const;
 
-    /// The force per area that is given at a point with this outward normal of
-    /// the face: F - p nu, or S nu; zero in the directions in which u is
-    /// prescribed.
+    /// Return the given force per area at a point with this outward normal nu:
+    /// F - p nu, or S nu; zero in directions in which u is prescribed.
     Tensor<1, dim>
     load(const Point<dim>     &x,
          const Tensor<1, dim> &outward_normal,
          const double          t) const;
 
-    /// The tangential part of w(x,t) - w(x,0); zero at rest.
+    /// The tangential part of w(x,t) - w(x,0); zero for a foundation at rest.
     Tensor<1, dim>
     sliding(const Point<dim> &x, const double t) const
     {
@@ -217,7 +215,7 @@ namespace Viscoplastic
       return w - (w * normal) * normal;
     }
 
-    /// The displacement d nu + sliding() of glued contact.
+    /// Return the displacement d nu + sliding() of glued contact.
     Tensor<1, dim>
     glued_displacement(const Point<dim>     &x,
                        const Tensor<1, dim> &outward_normal,
@@ -247,18 +245,18 @@ namespace Viscoplastic
       return all || role == BoundaryRole::clamped || is_glued();
     }
 
-    /// All expressions of the condition, those of the friction bound included.
+    /// All expressions in x and t of the condition, friction data included.
     std::vector<const Expression<dim> *>
     data() const;
 
-    /// Names of the entries that are given in @p parameters (the ones that it
-    /// was made of), but mean nothing for this role and friction law.
+    /// Return the names of the entries that are given in @p parameters, from
+    /// which this condition was made, but have no effect for its role and laws.
     std::vector<std::string>
     unused_entries(const BoundaryParameters &parameters) const;
 
-    /// The friction bound rho(x,t) without that of a computed pressure p, and
-    /// the coefficient mu(x,t) of the latter: rho + mu p. Throw ExcMessage
-    /// where an entry is negative.
+    /// Return the part rho(x,t) of the friction bound rho + mu p that does not
+    /// depend on a computed pressure p, and the friction coefficient mu(x,t).
+    /// Throw ExcMessage where an entry is negative.
     double
     bound(const Point<dim> &x, const double t) const;
 
@@ -281,7 +279,7 @@ namespace Viscoplastic
              (normal_stress && normal_stress->depends_on_time());
     }
 
-    /// Whether friction or gap() depend on time.
+    /// Whether the data of friction or gap() depend on time.
     bool
     bound_depends_on_time() const
     {
@@ -299,7 +297,7 @@ namespace Viscoplastic
       return contact_law != nullptr && contact_law->kind == kind;
     }
 
-    /// The sum of the entries of friction, of_pressure or not.
+    /// The sum of data of friction that do, or do not, multiply a pressure.
     double
     sum_of_friction(const Point<dim> &x,
                     const double      t,
@@ -317,7 +315,7 @@ namespace Viscoplastic
 
 
 
-  /// v_tau = v - v_nu nu.
+  /// Return v_tau = v - v_nu nu.
   template <int dim>
   Tensor<1, dim>
   tangential(const Tensor<1, dim> &v, const Tensor<1, dim> &normal)

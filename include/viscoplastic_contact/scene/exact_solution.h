@@ -11,22 +11,22 @@
 
 namespace Viscoplastic
 {
-  /// A known solution (u, sigma) of a scene: for the errors of a run, and to
-  /// make up a problem that it solves. Then the data follow from it,
+  /// A known solution (u, sigma) of a scene, to measure errors and, if it makes
+  /// data, to define the manufactured problem that it solves,
   ///
   ///     b = -Div sigma,   F = sigma nu,   S = sigma_nu,   u0, sigma0,
   ///     s = sigma' - E eps(u') - G(t, sigma, eps(u)),
   ///
   /// with the source s added to G, which may depend on x and t. Friction bounds
-  /// remain data of the scene, since they do not follow where the body sticks.
+  /// remain data of the scene, since a sticking body does not determine them.
   ///
-  /// Derivatives are differences of second order over 1e-4 of the size of the
-  /// body and of the length of time: right up to some 1e-8.
+  /// Derivatives are differences of second order with steps of 1e-4 of the size
+  /// of the body and of the end time, accurate to about 1e-8.
   template <int dim>
   class ExactSolution
   {
   public:
-    /// @p end_time: T. Throws ExcMessage with a sentence for the user.
+    /// @p end_time is T. Throws ExcMessage with a sentence for the user.
     ExactSolution(const ExactSolutionParameters &parameters,
                   const double                   end_time,
                   const PlaneModel plane_model = PlaneModel::strain);
@@ -34,16 +34,16 @@ namespace Viscoplastic
     /// Whether the data of the problem follow from the solution.
     const bool makes_data;
 
-    /// Whether `Stress' is given, and with it, for made-up data, a source.
+    /// Whether `Stress' is given; a solution that makes data then has a source.
     bool
     has_own_stress() const
     {
       return given_stress.has_value();
     }
 
-    /// Tell the solution of the body: its size is the scale of differences.
-    /// @p elastic is its material, if that is one without a law, and gives the
-    /// stress E eps(u) if there is no other.
+    /// Set the size of the body, the scale of difference steps. If `Stress' is
+    /// not given and @p elastic is not null, the stress is E eps(u) of this
+    /// material. Throws ExcMessage if data need a stress and there is none.
     void
     set_body(const double size, const Material<dim> *elastic);
 
@@ -59,14 +59,14 @@ namespace Viscoplastic
       return given_displacement->vector(x, t);
     }
 
-    /// grad u: derivatives of component i in row i.
+    /// grad u, with the derivatives of component i in row i.
     Tensor<2, dim>
     gradient(const Point<dim> &x, const double t) const;
 
     SymmetricTensor<2, 3>
     strain(const Point<dim> &x, const double t) const;
 
-    /// eps_zz of the section in generalized plane strain, given behind the
+    /// eps_zz of the section in generalized plane strain, the entry after the
     /// components of the displacement; 0 in other models.
     double
     axial_strain(const double t) const
@@ -98,7 +98,7 @@ namespace Viscoplastic
     body_force(const Point<dim> &x, const double t) const;
 
     /// The side of t from which a time derivative is taken: that of the step
-    /// that begins there, or of the step that ends there.
+    /// beginning at t (after) or of the step ending at t (before).
     enum class Side
     {
       after,
@@ -114,12 +114,12 @@ namespace Viscoplastic
     SymmetricTensor<2, 3>
     stress_rate(const Point<dim> &x, const double t, const Side side) const;
 
-    /// Throws ExcMessage if the rates at x tend to infinity at time t.
+    /// Throws ExcMessage if rates in time are unbounded at (x, t).
     void
     check_rates(const Point<dim> &x, const double t) const;
 
   private:
-    /// sigma_ij for all i: evaluates no other component where they are given.
+    /// sigma_ij for all i; evaluates only these components of a given stress.
     Tensor<1, dim>
     stress_column(const Point<dim>  &x,
                   const double       t,

@@ -9,12 +9,12 @@
 
 namespace Viscoplastic
 {
-  /// A time within a step at which a datum is far from its values at both ends
-  /// of the step, so that a run with these steps does not see what it does: a
-  /// load that vibrates in time with the steps, or a short blow. Far is two
-  /// fifths of the range of its values, summed over the places, so that a load
-  /// that wanders is no such datum; nor is a jump or a ramp within a step. In
-  /// long runs a single pulse may be overlooked.
+  /// Return a time within a step at which a datum is far from its values at
+  /// both ends of the step, as a load oscillating with the steps or a short
+  /// pulse, which a run does not see. Far means 2/5 of the range of values in
+  /// the run, both summed over @p places, so that a load moving from place to
+  /// place is not reported, nor is a jump or a ramp within a step. Steps are
+  /// sampled: in long runs a single pulse may be missed.
   template <int dim>
   std::optional<double>
   find_unseen_change(const Expression<dim>         &datum,
@@ -22,9 +22,9 @@ namespace Viscoplastic
                      const TimeSchedule            &schedule);
 
 
-  /// Sentences that name the loads, displacements and data of friction that
-  /// jump in time, that change unseen by the time steps, or that are given but
-  /// move nothing. The same on all ranks.
+  /// Return warnings that name loads, displacements and data of friction that
+  /// jump in time or change unseen within time steps, and foundation motions
+  /// without effect. The same on all ranks.
   template <int dim>
   std::vector<std::string>
   warnings_of_data_in_time(const Scene<dim>         &scene,

@@ -12,21 +12,21 @@
 
 namespace Viscoplastic
 {
-  /// What one part of the body consists of: its elastic tensor E and thermal
-  /// expansion as functions of position, and its law G.
+  /// The material of a part of the body: its elastic tensor E and thermal
+  /// expansion as functions of position, and its viscoplastic law G.
   ///
-  /// A material may be absent in some stages of construction. Its cells stay in
-  /// the mesh then, without loads, flow or stress, and with a stiffness that is
-  /// absent_stiffness times that of the material: what is left of the body does
-  /// not feel them, and they follow it.
+  /// A material may be absent in some stages of construction. Its cells then
+  /// stay in the mesh, without loads, flow or stress, and with a stiffness of
+  /// absent_stiffness times that of the material: too soft to affect the rest
+  /// of the body, whose motion they follow.
   template <int dim>
   class Material
   {
   public:
-    /// @p section is the subsection of the parameter file ("Material" or
-    /// "Material 2"), in which @p handler stands outside; it names the material
-    /// in messages; @p temperature is null in scenes that have none. Throws
-    /// ExcMessage for data that cannot be right anywhere.
+    /// @p section: the subsection of the parameter file ("Material" or
+    /// "Material 2"), which names the material in messages; @p handler is
+    /// outside of it. @p temperature: null in scenes without. Throws ExcMessage
+    /// for data that are wrong regardless of the position.
     Material(const std::string                 &section,
              const MaterialParameters          &parameters,
              ParameterHandler                  &handler,
@@ -34,7 +34,7 @@ namespace Viscoplastic
              const bool                         is_absent   = false,
              const Temperature<dim>            *temperature = nullptr);
 
-    /// E at x. Throws ExcMessage naming section, place and what is wrong.
+    /// Return E at x. Throws ExcMessage naming section, place and error.
     Stiffness
     stiffness(const Point<dim> &x) const;
 
@@ -60,7 +60,7 @@ namespace Viscoplastic
       return thermal_expansion ? thermal_expansion->value(x, 0.) : 0.;
     }
 
-    /// Whether the temperature has to be an absolute one.
+    /// Whether the law needs absolute temperatures.
     bool
     needs_absolute_temperature() const
     {
@@ -74,7 +74,7 @@ namespace Viscoplastic
     /// its entries.
     const std::string name;
     const std::string law_name;
-    /// Whether this stands for the material where it is absent.
+    /// Whether this replaces a material in the stages in which that is absent.
     const bool is_absent;
     /// The times at which the material is added and removed; -infinity and
     /// infinity if never.

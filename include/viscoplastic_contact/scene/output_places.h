@@ -14,7 +14,7 @@ namespace Viscoplastic
 {
   using namespace dealii;
 
-  /// A line of `Output/Lines': points at equal distances, the ends among them.
+  /// A line of `Output/Lines': equidistant points including both ends.
   template <int dim>
   struct OutputLine
   {
@@ -46,17 +46,17 @@ namespace Viscoplastic
     Domain                  domain = Domain::body;
     unsigned int            id     = 0; // of a boundary or material
     std::set<RecordedField> fields;
-    /// Whether energies are asked for: of materials and the body.
+    /// Whether energies are asked for, over a material or the body.
     bool energies = false;
 
-    /// The place as names of columns have it: `boundary_3', `material_2',
+    /// Return the place as in names of columns: `boundary_3', `material_2',
     /// `body'.
     std::string
     name() const;
   };
 
 
-  /// The points of `Output/Points'. Throws ExcMessage, as the others do.
+  /// Read `Output/Points'. Throws ExcMessage, as the functions below do.
   template <int dim>
   std::vector<Point<dim>>
   read_output_points(const std::string &text);

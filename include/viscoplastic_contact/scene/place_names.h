@@ -11,8 +11,8 @@
 
 namespace Viscoplastic
 {
-  /// A place of a scene without its name: `boundary' 3, `material' 1, `point' 0
-  /// or `line' 0.
+  /// Kind and number of a place of a scene: `boundary' 3, `material' 1, `point'
+  /// 0 or `line' 0.
   struct PlaceNumber
   {
     std::string  kind;
@@ -33,18 +33,17 @@ namespace Viscoplastic
   };
 
 
-  /// What a scene calls its places, for people: in what a run prints, in the
-  /// record of the run and in entries that name a place. The names are those of
-  /// `Boundary <id>/Name', `Material <id>/Name', `Output/Points' and
-  /// `Output/Lines', and of the physical groups of a mesh file of Gmsh.
+  /// The names of the places of a scene, as used in the output and the record
+  /// of a run and in entries that refer to a place. They are given by `Boundary
+  /// <id>/Name', `Material <id>/Name', `Output/Points' and `Output/Lines', and
+  /// by the physical groups of a Gmsh mesh file.
   class PlaceNames
   {
   public:
     PlaceNames() = default;
 
-    /// Take the names from the entries of a scene. Throws ExcMessage for one
-    /// that is no name or that two places have; find() and column() for one
-    /// that no place has.
+    /// Take the names from the entries of a scene. Throws ExcMessage for an
+    /// inadmissible name or one that two places have.
     explicit PlaceNames(const Parameters &parameters);
 
     bool
@@ -53,7 +52,7 @@ namespace Viscoplastic
       return names.count({kind, number}) == 1;
     }
 
-    /// The name of a place, or `boundary 3' if it has none.
+    /// Return the name of a place, or `boundary 3' if it has none.
     std::string
     of(const std::string &kind, const unsigned int number) const
     {
@@ -62,23 +61,23 @@ namespace Viscoplastic
       return found == names.end() ? place.text() : found->second;
     }
 
-    /// The place that @p name names, or nothing. Numbers are names, too:
-    /// `boundary 3'.
+    /// Return the place with this @p name, or nothing; `boundary 3' is a name,
+    /// too.
     std::optional<PlaceNumber>
     find(const std::string &name) const;
 
-    /// The column of statistics.csv that @p quantity means: it itself, or, of
-    /// `reaction_y of roof' and `displacement_y of crown', that of the place.
+    /// The column of statistics.csv for `reaction_y of roof' or `displacement_y
+    /// of crown', or @p quantity itself. Throws ExcMessage for unknown names.
     std::string
     column(const std::string &quantity) const;
 
-    /// The reverse of column(): `reaction_y of roof' of `reaction_3_y'; the
-    /// column itself where the place has no name.
+    /// The inverse of column(): returns `reaction_y of roof' for
+    /// `reaction_3_y', and the column itself if the place has no name.
     std::string
     quantity(const std::string &column) const;
 
-    /// A column of statistics.csv, or the part of it before its component, for
-    /// people: `reaction of roof' of `reaction_3'.
+    /// Return a column of statistics.csv, with or without its component, in
+    /// words: `reaction of roof' for `reaction_3'.
     std::string
     words(const std::string &column) const;
 
@@ -90,8 +89,8 @@ namespace Viscoplastic
   };
 
 
-  /// An element of a list of places, `crown = 0, 2.5', as name and place; the
-  /// name is empty if there is none.
+  /// Split an element of a list of places, `crown = 0, 2.5', into name and
+  /// place; the name is empty if there is none.
   std::pair<std::string, std::string>
   split_name(const std::string &text);
 } // namespace Viscoplastic

@@ -19,7 +19,7 @@ namespace Viscoplastic
     enum class Kind
     {
       friction_force,
-      contact_force, // of contact that opens
+      contact_force, // of unilateral contact
       friction_dissipation,
       reaction,
       displacement, // of a point of `Output/Points'
@@ -27,11 +27,11 @@ namespace Viscoplastic
       axial_force
     };
 
-    /// The id that stands for all boundaries together.
+    /// The value of number for the sum over all boundaries.
     static constexpr unsigned int all = numbers::invalid_unsigned_int;
 
     Kind kind;
-    /// The boundary id of a force, the number of a point; and x, y or z.
+    /// The boundary id of a force or number of a point; 0, 1, 2 for x, y, z.
     unsigned int number = 0, component = 0;
     /// The column of statistics.csv.
     std::string name;
@@ -65,7 +65,7 @@ namespace Viscoplastic
       return number == all || number == id;
     }
 
-    /// Whether it is a force of what is prescribed.
+    /// Whether this is the force of a prescribed displacement or strain.
     bool
     is_reaction() const
     {
@@ -73,9 +73,9 @@ namespace Viscoplastic
     }
   };
 
-  /// The quantity that @p column names. Throws ExcMessage if there is none in
-  /// a scene with these conditions and so many output points, in which @p
-  /// of_section, if any, is a quantity; it calls places by their @p names.
+  /// Return the quantity with this @p column. Throws ExcMessage, naming places
+  /// by @p names, unless it exists for these conditions, this number of points
+  /// and the quantity @p of_section, if any, of generalized plane strain.
   template <int dim>
   QuantityOfInterest
   quantity_of_interest(

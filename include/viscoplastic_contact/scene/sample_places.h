@@ -8,9 +8,9 @@
 
 namespace Viscoplastic
 {
-  // Places that stand for a piece of the boundary or for the body, where data
-  // are looked at as functions of time: about 64, spread evenly over the coarse
-  // mesh, which all ranks know.
+  // About 64 sample places, spread evenly over a part of the boundary or over
+  // the body, at which data are examined as functions of time. They are taken
+  // from the coarse mesh, which all ranks know.
 
   template <int dim>
   std::vector<Point<dim>>
@@ -21,8 +21,8 @@ namespace Viscoplastic
   std::vector<Point<dim>>
   places_in_body(const Triangulation<dim> &triangulation);
 
-  /// The values of a datum at some places at time t; a single one if it does
-  /// not depend on the place.
+  /// Return the values of a datum at the places at time t; a single value if it
+  /// does not depend on position.
   template <int dim>
   std::vector<double>
   values_at(const Expression<dim>         &datum,
@@ -30,7 +30,7 @@ namespace Viscoplastic
             const double                   t);
 
   /// Call @p visit for each load, displacement, datum of friction and
-  /// temperature that depends on time, with the places where it acts.
+  /// temperature that depends on time, with sample places where it acts.
   template <int dim>
   void
   for_each_datum_in_time(

@@ -24,9 +24,9 @@
 
 namespace Viscoplastic
 {
-  /// The mathematical problem, free of any discretization: the body, its
+  /// The mathematical problem, independent of the discretization: the body, its
   /// materials, boundary conditions, loads and time interval, with data as
-  /// functions of x and t. The members that a scene does not need are empty.
+  /// functions of x and t. Members that a scene does not need are empty.
   template <int dim>
   class Scene
   {
@@ -34,19 +34,19 @@ namespace Viscoplastic
     /// Throws ExcMessage with a sentence for the user.
     explicit Scene(const Parameters &parameters);
 
-    /// Hold the roles and materials against the mesh: each boundary id has a
-    /// role and exists, symmetry and contact pieces are flat (sets their
-    /// normals), each material id has a material. Makes the materials that the
-    /// mesh has. Collective.
+    /// Check the scene against the mesh: boundary ids have roles and roles have
+    /// boundaries, symmetry and contact boundaries are flat (sets their
+    /// normals), each material id has a material. Constructs the materials of
+    /// the mesh. Throws ExcMessage. Collective.
     void
     inspect(const parallel::distributed::Triangulation<dim> &triangulation);
 
-    /// The effects that this scene has, for the user.
+    /// Return the effects in this scene, as words for the user.
     std::vector<std::string>
     effects() const;
 
-    /// Entries that matter here, are left to the program, and had another
-    /// default in earlier versions, for the user.
+    /// Return the entries, in words for the user, that are not given, affect
+    /// this scene, and had another default in earlier versions.
     std::vector<std::string>
     changed_defaults() const;
 
@@ -65,29 +65,29 @@ namespace Viscoplastic
       return !material(id).is_absent;
     }
 
-    /// The material of cells with this id, be it absent in the present stage.
+    /// The material of cells with this id in the stages in which it is present.
     const Material<dim> &
     lasting_material(const types::material_id id) const
     {
       return *entries.at(id).material;
     }
 
-    /// Whether materials come or go, be it after the end of the run.
+    /// Whether materials are added or removed, even after the end of the run.
     bool
     has_stages() const
     {
       return has_changing_materials;
     }
 
-    /// Whether faces of a contact boundary, or of the body opposite, come or go
-    /// with the materials of a stage.
+    /// Whether faces of a contact boundary or of its primary side are added or
+    /// removed with the materials of a stage.
     bool
     contact_changes_with_stages() const
     {
       return has_changing_contact;
     }
 
-    /// The present stage of construction, from 0 on.
+    /// The present stage of construction, counted from 0.
     unsigned int
     stage() const
     {
@@ -102,7 +102,7 @@ namespace Viscoplastic
              t >= stage_ends[present_stage];
     }
 
-    /// The stage to which a step belongs that ends at time t.
+    /// The stage of a step that ends at time t.
     unsigned int
     stage_of_step_to(const double t) const
     {
@@ -110,7 +110,7 @@ namespace Viscoplastic
              stage_ends.begin();
     }
 
-    /// Sections of the materials that the present stage does not have.
+    /// The names of the materials that are absent in the present stage.
     std::vector<std::string>
     absent_materials() const
     {
@@ -121,7 +121,7 @@ namespace Viscoplastic
       return result;
     }
 
-    /// Let materials come and go, so that those of stage @p n are present.
+    /// Make the materials of stage @p n present and the others absent.
     void
     enter_stage(const unsigned int n)
     {
@@ -139,8 +139,8 @@ namespace Viscoplastic
              !parameters.exact_solution.reference_directory.empty();
     }
 
-    /// Whether boundaries are in contact with each other, of bodies that need
-    /// not share any face.
+    /// Whether boundaries of bodies are in contact with each other; such bodies
+    /// need not share any face.
     bool
     has_contact_pairs() const
     {
@@ -148,14 +148,14 @@ namespace Viscoplastic
         [](const auto &b) { return b.against.has_value(); });
     }
 
-    /// Whether another boundary is in contact with this one (its primary side).
+    /// Whether this boundary is the primary side of contact of another one.
     bool
     is_other_side(const types::boundary_id id) const
     {
       return on_any_boundary([id](const auto &b) { return b.against == id; });
     }
 
-    /// Whether z has a rate G: of laws, or of a manufactured solution.
+    /// Whether z has a rate G, of a law or of a manufactured solution.
     bool
     has_viscosity() const
     {
@@ -171,8 +171,8 @@ namespace Viscoplastic
         [](const auto &m) { return m.law && m.law->n_history_variables > 0; });
     }
 
-    /// Whether all steps are of backward Euler; known with the mesh, as the
-    /// viscosity is.
+    /// Whether all steps are backward Euler steps. Known after inspect(), as
+    /// has_viscosity() is.
     bool
     is_implicit() const
     {
@@ -180,8 +180,8 @@ namespace Viscoplastic
              parameters.time.scheme == TimeScheme::backward_euler;
     }
 
-    /// Whether steps beyond the stability limit are of backward Euler, and the
-    /// others not.
+    /// Whether steps beyond the stability limit are backward Euler steps, and
+    /// shorter ones explicit.
     bool
     is_implicit_beyond_the_limit() const
     {
@@ -190,7 +190,7 @@ namespace Viscoplastic
                StiffnessPolicy::backward_euler;
     }
 
-    /// Whether a source makes the exact solution one of the scene.
+    /// Whether a source in G makes the exact solution solve the scene.
     bool
     has_source() const
     {
@@ -198,8 +198,8 @@ namespace Viscoplastic
              exact_solution->has_own_stress();
     }
 
-    /// Whether there is z = sigma - E eps(u): from viscosity, from the
-    /// temperature, or from initial data.
+    /// Whether z = sigma - E eps(u) may be nonzero: by viscosity, initial data,
+    /// thermal strain or stages of construction.
     bool
     has_irreversible_stress() const
     {
@@ -215,7 +215,7 @@ namespace Viscoplastic
         [](const auto &m) { return m.thermal_expansion.has_value(); });
     }
 
-    /// Whether thermal strain at t = 0 may not be zero.
+    /// Whether the thermal strain at t = 0 may be nonzero.
     bool
     has_initial_thermal_stress() const
     {
@@ -270,15 +270,15 @@ namespace Viscoplastic
       return on_any_boundary([](const auto &b) { return b.is_unilateral(); });
     }
 
-    /// Whether nodes have contact points: friction or obstacles.
+    /// Whether nodes are contact points, with friction or unilateral contact.
     bool
     has_contact_points() const
     {
       return has_friction() || has_unilateral_contact();
     }
 
-    /// Whether the error of time steps is estimated: of z, and of slip that may
-    /// turn.
+    /// Whether the error of time steps is estimated: that of z, of the slip
+    /// direction in 3D, or of friction bounds from the previous step.
     bool
     has_time_error() const
     {
@@ -286,8 +286,8 @@ namespace Viscoplastic
              has_bounds_of_step_before();
     }
 
-    /// Whether some friction bound is that of the pressure or the slip rate of
-    /// the step before.
+    /// Whether some friction bound uses the pressure or the slip rate of the
+    /// previous step.
     bool
     has_bounds_of_step_before() const
     {
@@ -299,7 +299,7 @@ namespace Viscoplastic
       });
     }
 
-    /// Whether z is kept at quadrature points, not as cell means.
+    /// Whether z is stored at quadrature points instead of as cell means.
     bool
     keeps_history_at_points() const
     {
@@ -353,7 +353,7 @@ namespace Viscoplastic
                          [&holds](const auto &one) { return holds(*one); });
     }
 
-    /// Whether any output asks for what friction has done per area.
+    /// Whether any output asks for the work of friction per area.
     bool
     keeps_friction_work() const;
 
@@ -368,7 +368,7 @@ namespace Viscoplastic
       return parameters.refinement.strategy != RefinementStrategy::none;
     }
 
-    /// " MPa", behind a number of a result; empty if no units are declared.
+    /// The unit behind a number, as " MPa"; empty if no units are declared.
     std::string
     unit(const Quantity quantity) const
     {
@@ -387,7 +387,7 @@ namespace Viscoplastic
     /// Data; absent where identically zero.
     std::optional<VectorExpression<dim>> body_force;
     std::optional<VectorExpression<dim>> initial_displacement, initial_stress;
-    /// N(t) or eps_zz(t): one of them in generalized plane strain.
+    /// N(t) or eps_zz(t); exactly one of them in generalized plane strain.
     std::optional<Expression<dim>> axial_force, axial_strain;
     /// The temperature T(x,t); null in scenes without.
     std::unique_ptr<const Temperature<dim>> temperature;
@@ -397,17 +397,17 @@ namespace Viscoplastic
     std::vector<OutputIntegral>  output_integrals;
     /// The quantity of `Error control/Quantity'; absent if there is none.
     std::optional<QuantityOfInterest> quantity;
-    /// Warnings: what is allowed but doubtful, one sentence each.
+    /// Warnings about data that are allowed but doubtful, one sentence each.
     std::vector<std::string> warnings;
-    /// The times at which materials come or go, in ascending order.
+    /// The times at which materials are added or removed, ascending.
     std::vector<double> stage_ends;
 
   private:
     void
     inspect_boundary_ids(const std::set<types::boundary_id> &ids) const;
 
-    /// Refuse curved contact boundaries with edges, by the largest angle
-    /// between faces that meet; warn where there may be some.
+    /// Refuse curved contact boundaries with edges, given the largest angle
+    /// between adjacent faces; warn if the angle is suspicious.
     void
     inspect_curve(const types::boundary_id id, const double angle);
 
@@ -415,17 +415,17 @@ namespace Viscoplastic
     inspect_flatness(
       const parallel::distributed::Triangulation<dim> &triangulation);
 
-    /// Refuse sections of bodies of revolution that cross the axis or are free
-    /// to move off it. Collective.
+    /// Refuse sections of bodies of revolution that cross the axis or whose
+    /// nodes on the axis are free to move off it. Collective.
     void
     inspect_axis(
       const parallel::distributed::Triangulation<dim> &triangulation) const;
 
-    /// Warn of boundary entries without effect.
+    /// Warn of entries of boundaries and of the initial state without effect.
     void
     inspect_unused_entries();
 
-    /// Warn of pieces with prescribed displacement that touch Gamma_3.
+    /// Warn of boundaries with prescribed displacement that touch Gamma_3.
     void
     inspect_junctions(
       const parallel::distributed::Triangulation<dim> &triangulation);
@@ -433,29 +433,29 @@ namespace Viscoplastic
     void
     make_materials(const std::set<types::material_id> &ids);
 
-    /// Warn of temperatures without effect; refuse wrong units.
+    /// Warn of a temperature without effect or probably not absolute.
     void
     inspect_temperature(const Triangulation<dim> &triangulation);
 
-    /// Find the stages of construction; refuse some that cannot be.
+    /// Find the stages of construction; refuse those without any material.
     void
     find_stages(const parallel::distributed::Triangulation<dim> &triangulation);
 
-    /// Find whether contact changes with stages; refuse what cannot.
+    /// Set whether contact changes with stages; refuse unsupported changes.
     void
     inspect_contact_of_stages(
       const std::set<types::material_id>              &changing,
       const parallel::distributed::Triangulation<dim> &triangulation);
 
-    /// Set what follows from an exact solution; refuse what is given besides.
+    /// Set the data of the exact solution; refuse other data beside them.
     void
     derive_data();
 
-    /// N or eps_zz, of which at most one is given. Throws ExcMessage.
+    /// Read N or eps_zz, of which at most one is given. Throws ExcMessage.
     void
     read_axial_datum();
 
-    /// Set the primary boundaries of contact between bodies.
+    /// Set the primary sides of contact between bodies. Throws ExcMessage.
     void
     find_contact_pairs();
     void
@@ -465,9 +465,9 @@ namespace Viscoplastic
     struct Entry
     {
       const Material<dim> *material;
-      /// The material in its place where it is absent; null if it never is.
+      /// Stands in where the material is absent; null if it is always present.
       const Material<dim> *absent = nullptr;
-      /// The first stage that has it, and the first after these.
+      /// The material is present in the stages begin <= n < end.
       unsigned int begin = 0, end = numbers::invalid_unsigned_int;
     };
 

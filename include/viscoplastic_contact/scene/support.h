@@ -13,8 +13,8 @@
 
 namespace Viscoplastic
 {
-  /// Supports have ids beyond those of boundaries, so that nodes, conditions
-  /// and reactions know them as they know boundaries.
+  /// Supports have ids beyond those of boundaries, so that conditions and
+  /// reactions of both are addressed alike.
   constexpr types::boundary_id first_support_id = largest_id + 1,
                                first_edge_id    = 2 * first_support_id;
 
@@ -23,19 +23,19 @@ namespace Viscoplastic
   name_in_columns(const types::boundary_id id);
 
 
-  /// Nodes of which some components of u are zero: one at a vertex of the
-  /// coarse mesh, which every mesh has, or those where boundaries meet.
+  /// Nodes at which some components of u are zero: a vertex of the coarse mesh,
+  /// which every mesh has, or the nodes where boundaries meet.
   template <int dim>
   struct Support
   {
     /// The place of the support in words.
     std::string place;
-    /// The place of a support at a point; once the mesh is known, that of its
-    /// vertex.
+    /// The position of a support at a point: as given, and that of the nearest
+    /// vertex after place_supports().
     std::optional<Point<dim>> position;
-    /// The boundaries whose common edge is supported; empty for points.
+    /// The boundaries whose intersection is supported; empty for points.
     std::set<types::boundary_id> boundaries;
-    /// The role displacement with the components that are held.
+    /// The condition, with role displacement and the held components.
     BoundaryCondition<dim> condition;
   };
 
@@ -46,8 +46,8 @@ namespace Viscoplastic
   read_supports(const SupportParameters &parameters);
 
 
-  /// Find the vertices of points and the edges where boundaries meet. Returns
-  /// warnings, a sentence each. Throws ExcMessage.
+  /// Find the vertices of supports at points and check that boundaries of the
+  /// others meet. Returns warnings, one sentence each. Throws ExcMessage.
   template <int dim>
   std::vector<std::string>
   place_supports(

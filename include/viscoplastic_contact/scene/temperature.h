@@ -11,8 +11,8 @@
 
 namespace Viscoplastic
 {
-  /// The number in @p text, or nothing if that is empty. Throws ExcMessage
-  /// naming @p entry if it is something else, or not positive.
+  /// Return the number in @p text, or nothing if it is empty. Throw ExcMessage
+  /// naming @p entry if it is anything else, or not positive if it has to be.
   std::optional<double>
   optional_number(const std::string &text, const std::string &entry);
   std::optional<double>
@@ -20,7 +20,7 @@ namespace Viscoplastic
 
 
 
-  /// The temperature T(x, t) of the body, which is given.
+  /// The given temperature T(x, t) of the body.
   template <int dim>
   class Temperature
   {
@@ -28,14 +28,14 @@ namespace Viscoplastic
     Temperature(const TemperatureParameters &parameters, const Units &units);
 
     const Expression<dim> value;
-    /// T_0, where there is no thermal strain; nothing for the temperature of
-    /// each place at t = 0.
+    /// The temperature T_0 without thermal strain; absent if it is the
+    /// temperature of each place at t = 0.
     const std::optional<double> reference;
     /// The gas constant R, in the units of the scene.
     const double gas_constant;
   };
 
-  /// The temperature that the entries give; null if none.
+  /// Return the temperature that the entries give; null if they give none.
   template <int dim>
   std::unique_ptr<const Temperature<dim>>
   make_temperature(const TemperatureParameters &parameters, const Units &units);

@@ -185,6 +185,7 @@ namespace Viscoplastic
       if (kind == "Boundary")
         return is_one_of({"Role",
                           "Contact law",
+                          "Against",
                           "Foundation normal",
                           "Friction law",
                           "Normal stiffness",

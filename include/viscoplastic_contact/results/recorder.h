@@ -289,6 +289,16 @@ namespace Viscoplastic
       {
         run.errors->exchange(archive);
         run.quantity_errors.exchange(archive);
+        archive &run.has_coarse_curves;
       }
+    std::vector<char> doubts;
+    for (const std::string &doubt : run.doubtful_steps)
+      {
+        doubts.insert(doubts.end(), doubt.begin(), doubt.end());
+        doubts.push_back('\n');
+      }
+    archive &doubts;
+    run.doubtful_steps =
+      Utilities::split_string_list({doubts.begin(), doubts.end()}, '\n');
   }
 } // namespace Viscoplastic

@@ -459,7 +459,7 @@ namespace
                           /* reduction = */ 1e-10,
                           /* enough = */ 0.);
           EXPECT_LT(distance(dense.gather(u), expected),
-                    1e-7 * expected.l2_norm());
+                    1e-6 * expected.l2_norm());
         }
   }
 

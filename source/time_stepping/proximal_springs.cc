@@ -15,6 +15,9 @@ namespace Viscoplastic
     constexpr double spring_stiffness = 1e-3;
     /// Rounding of loads, relative to the diagonal times the displacement.
     constexpr double rounding_of_forces = 1e-14;
+    /// Rounding errors of a solve may remain in the springs, too, so that the
+    /// error may be this times the rounding error.
+    constexpr double rounding_margin = 2.;
     /// A body that still moves after this many solves is not held.
     constexpr unsigned int max_proximal_steps = 200;
     /// If the body has not come to rest after this many solves, something much
@@ -368,7 +371,8 @@ namespace Viscoplastic
       right_side.l1_norm() >
           rounding_of_forces / spring_stiffness * force.l1_norm() ?
         held.size :
-        std::max(held.size, report.rounding_error / tolerance);
+        std::max(held.size,
+                 rounding_margin * report.rounding_error / tolerance);
     report.relative_error = reference > 0. ? report.error / reference : 0.;
     report.tolerance      = tolerance;
     return held;
@@ -424,9 +428,9 @@ namespace Viscoplastic
         whole += rigid_motion;
         const auto [in_springs, size, in_balance] =
           measure(problem, right_side, tolerance, u, change, whole, report);
-        // Rounding errors of a solve may remain in the springs, too.
-        if (in_balance && report.error <= std::max(tolerance * size,
-                                                   2. * report.rounding_error))
+        if (in_balance &&
+            report.error <= std::max(tolerance * size,
+                                     rounding_margin * report.rounding_error))
           {
             u += rigid_motion;
             return report;

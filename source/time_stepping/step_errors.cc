@@ -236,9 +236,11 @@ namespace Viscoplastic
     // none, and a large indicator in full, so that steps do not depend on how
     // far iterations have gone. A body that flows may end a step where it began
     // at the limit of stability, k r = 2: half the creep path is a change, too.
+    // And so is what data do that are the same at both ends.
     const double left = step.report.error + accepted.report.error,
                  flow = estimate.creep_path - accepted.errors.creep_path;
-    const bool moves  = std::max(errors.change, 0.5 * flow) > left;
+    const bool moves =
+      std::max({errors.change, 0.5 * flow, swing.energy_norm}) > left;
     const bool is_of_quantity =
       scene.quantity && scene.parameters.error_control.has_tolerance();
     if (moves)

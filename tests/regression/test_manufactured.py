@@ -409,8 +409,8 @@ class TwoBodies(TestCase):
         for dim, law, levels, ranks in (
             (2, "tresca", (1, 3), 1),
             (2, "coulomb", (1, 3), 2),
-            (3, "tresca", (0, 1), 3),
-            (3, "coulomb", (0, 1), 1),
+            (3, "tresca", (0, 2), 3),
+            (3, "coulomb", (0, 2), 1),
         ):
             with self.subTest(dim=dim, law=law):
                 coarse, fine = (
@@ -420,16 +420,14 @@ class TwoBodies(TestCase):
                 # measured: 1.00, 1.00 and 1.12 to 1.21
                 for norm in "energy", "stress", "multiplier":
                     column = f"error_{norm}"
-                    order = np.log2(coarse[column][-1] / fine[column][-1])
-                    self.assertGreater(order / (levels[1] - levels[0]), 0.99)
-                # the nodes on either side of where it begins: a cell and a half
-                cell = 1 / (6 * 2 ** levels[1])
+                    order = np.log2(coarse[column][-1] / fine[column][-1]) / 2
+                    self.assertGreater(order, 0.99)
+                # the nodes on either side of where it begins
                 area = 2 ** (dim - 2) * fine["slip_area"][-1]
-                self.assertClose(area, 0.5, absolute=1.7 * cell)
+                self.assertClose(area, 0.5, absolute=0.07)
                 effectivity = fine["estimate_space"][-1] / fine["error_energy"][-1]
                 self.assertGreater(effectivity, 1)
-                # measured: at most 1.08, and 1.111 on the coarse meshes in space
-                self.assertLess(effectivity, 1.1 if dim == 2 else 1.12)
+                self.assertLess(effectivity, 1.1)
 
 
 if __name__ == "__main__":

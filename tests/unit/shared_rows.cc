@@ -140,8 +140,8 @@ namespace
               for (unsigned int d = 0; d < dim; ++d)
                 others[c] += std::abs(matrix.values[e][c][d]);
         const auto found = rows.diagonal_block(i);
-        EXPECT_NEAR((found.first - diagonal).norm(), 0., 1e-4);
-        EXPECT_NEAR((found.second - others).norm(), 0., 1e-4);
+        EXPECT_NEAR((found.first - diagonal).norm(), 0., 1e-5);
+        EXPECT_NEAR((found.second - others).norm(), 0., 1e-5);
       }
     NodeBlock<dim> spring;
     spring[0][1]                = 3.;
@@ -149,7 +149,7 @@ namespace
     rows.set_row_sum(4, rows.row_sum(4) + spring);
     EXPECT_NEAR((rows.diagonal_block(4).first - before - spring).norm(),
                 0.,
-                1e-4);
+                1e-5);
   }
 
 
@@ -188,7 +188,7 @@ namespace
         std::copy_n(x.begin() + i * dim, dim, diagonal_only.begin() + i * dim);
         const Tensor<1, dim> left = row_times(i, x, diagonal_only);
         for (unsigned int c = 0; c < dim; ++c)
-          EXPECT_NEAR(left[c], b[i * dim + c], 1e-4);
+          EXPECT_NEAR(left[c], b[i * dim + c], 1e-5);
       }
     EXPECT_EQ(x.back(), 7.) << "of another rank";
 
@@ -199,7 +199,7 @@ namespace
       {
         const Tensor<1, dim> left = row_times(i, old, x);
         for (unsigned int c = 0; c < dim; ++c)
-          EXPECT_NEAR(left[c], b[i * dim + c], 1e-4);
+          EXPECT_NEAR(left[c], b[i * dim + c], 1e-5);
       }
   }
 

@@ -9,6 +9,7 @@ RESTART_MUTATIONS how many damaged checkpoints; both are small by default.
 """
 
 import contextlib
+import json
 import os
 import random
 import re
@@ -933,6 +934,41 @@ class Changes(OfSlab):
         self.refused("Boundary 7/Role", "free", "Boundary 7")
         for phases in "1: 10, 2: 8", "1: 8":  # past steps, fewer steps
             self.refused("Time/Phases", phases, "Time/Phases")
+
+
+    def test_doubts_are_kept(self):
+        """What a run has said before its restart of a mesh too coarse for curved faces
+        and of steps with several solutions; and bodies stay opposite each other."""
+        every = {"Checkpoint/Every n steps": 1, "Checkpoint/Keep": 99}
+        coarse = {
+            **every,
+            "Geometry/Arguments": "0, 0 : 1 : 2 : 2 : true | 0, 0 : 2 : 3 : 3 : true",
+            "Geometry/Global refinements": 0,
+            "Error control/Tolerance": 0.9,
+            "Mesh refinement/Strategy": "none",
+            "Time/Phases": "1: 4",
+            # small beside the miss of the arcs in the first steps alone
+            **on_boundary(21, Role="traction", Pressure="t"),
+        }
+        with Job("shrink_fit_2d", coarse) as job:
+            alone = "met by the estimate alone"
+            self.assertIn(alone, job.run().stdout)
+            job.forget_after(3)
+            self.assertIn(alone, job.run("--restart").stdout)
+            path = "Boundary 1/Against"
+            result = job.run("--restart", code=1, overrides={path: 21})
+            self.assertOneSentence(result.stderr, path, "was 20")
+        scene = {**every, "Boundary 2/Friction coefficient": 1}
+        with Job("literature/leaning_bar", scene) as job:
+
+            def doubts():
+                return json.loads((job.results / "run.json").read_text())["doubtful_steps"]
+
+            job.run()
+            expected = doubts()
+            job.forget_after(job.steps()[-2])
+            job.run("--restart")
+            self.assertEqual(doubts(), expected)
 
 
 class Begin(RestartCase):

@@ -188,6 +188,11 @@ namespace
     matrix.reinit(owned, dim, lists, MPI_COMM_WORLD);
     for (const auto &dofs : dofs_of_links)
       matrix.add(dofs, link);
+    // A row that differs from others in its last entry alone.
+    FullMatrix<double> last(2 * dim, 2 * dim);
+    last(dim - 1, 2 * dim - 1) = last(2 * dim - 1, dim - 1) = 1.;
+    if (dofs_of_links.size() > 5)
+      matrix.add(dofs_of_links[5], last);
     matrix.compress();
     if (owned.is_element(0))
       matrix.add_to_diagonal(0, 7.);

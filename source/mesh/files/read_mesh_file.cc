@@ -12,6 +12,7 @@
 
 #include <filesystem>
 #include <fstream>
+#include <future>
 #include <iterator>
 #include <map>
 #include <regex>
@@ -58,9 +59,12 @@ namespace Viscoplastic
                 "cannot be converted, since " + python +
                   " cannot be started: " + error.message() + by_hand};
 
+      // Read both at the same time: the script waits if either pipe is full.
+      std::future<std::string> all_messages =
+        std::async(std::launch::async, [&] { return all_of(messages); });
       std::string text = all_of(output);
       // Keep the last line; Python may print others before it.
-      std::string message = Utilities::trim(all_of(messages));
+      std::string message = Utilities::trim(all_messages.get());
       message             = message.substr(message.rfind('\n') + 1);
       script.wait(error);
       if (!error && script.exit_code() == 0)
@@ -296,7 +300,9 @@ namespace Viscoplastic
                  const PlaneModel   plane_model,
                  const MPI_Comm     communicator)
   {
-    std::string text   = content(name);
+    std::string text;
+    // Nodes of a cluster may not all see the file.
+    fail_together(communicator, [&] { text = content(name); });
     std::string suffix = std::filesystem::path(name).extension();
     std::transform(suffix.begin(), suffix.end(), suffix.begin(), ::tolower);
     refuse_geometry(name, suffix);

@@ -12,12 +12,9 @@ namespace Viscoplastic
 {
   namespace
   {
-    /// The relative tolerance of linear solves as long as the sets change.
-    constexpr double loose_tolerance = 0.05;
-    /// The same where bounds follow the pressure: looser, since the
-    /// preconditioner is that of the symmetric part, so that digits take more
-    /// iterations, and GMRES costs more than conjugate gradients.
-    constexpr double loose_tolerance_of_law = 0.2;
+    /// The relative tolerance of linear solves as long as the sets change: what
+    /// a set needs to be replaced by a better one.
+    constexpr double loose_tolerance = 0.2;
     /// A correction that stops at reversing slips is taken if the line search
     /// goes this far along it; otherwise others are tried.
     constexpr double least_limited_step = 0.5;
@@ -290,13 +287,11 @@ namespace Viscoplastic
   {
     // Loosely while the sets still change, as far as needed once they do not.
     // With a zero start, errors are relative to the first solution.
-    const double loose =
-      bounds && bounds->follow() ? loose_tolerance_of_law : loose_tolerance;
-    double      reduction = same_sets ?
-                              std::clamp(safety * tolerance * size / error,
-                                    std::min(safety * tolerance, loose),
-                                    loose) :
-                              loose;
+    const double reduction =
+      same_sets ? std::clamp(safety * tolerance * size / error,
+                             std::min(safety * tolerance, loose_tolerance),
+                             loose_tolerance) :
+                  loose_tolerance;
     const Timer timer;
     report.linear_iterations += bulk.correct(force, reduction, w);
     correction_seconds += timer.wall_time();

@@ -31,9 +31,7 @@ namespace Viscoplastic
                    const std::vector<TruncationType *> &truncations,
                    const Action                        &act)
     {
-      for (unsigned int p = face.first_point[node];
-           p < face.first_point[node + 1];
-           ++p)
+      for (const unsigned int p : face.node_points(node))
         {
           act(contact.bound[p]);
           for (unsigned int i = 0; i < 2; ++i)
@@ -150,10 +148,8 @@ namespace Viscoplastic
                            [&values = part.points.values](const double value) {
                              values.push_back(value);
                            });
-            points.n_points.push_back(layout.n_node_points(node->second));
-            for (unsigned int p = layout.first_point[node->second];
-                 p < layout.first_point[node->second + 1];
-                 ++p)
+            points.n_points.push_back(layout.node_points(node->second).size());
+            for (const unsigned int p : layout.node_points(node->second))
               points.sticks.push_back(state.contact.sticks[p]);
           }
         vertices.push_back(with_values);
@@ -303,7 +299,7 @@ namespace Viscoplastic
                       next_value <= packed.values.size());
         if (!node)
           return;
-        require_sense(n_points == layout.n_node_points(*node));
+        require_sense(n_points == layout.node_points(*node).size());
         const double *from = packed.values.data() + value;
         for_each_value(layout, *node, contact, truncations, [&](double &to) {
           to = *from++;

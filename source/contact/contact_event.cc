@@ -27,14 +27,14 @@ namespace Viscoplastic
     double n_points = 0., n_old = 0., n_new = 0., n_obstacles = 0.,
            n_old_touch = 0., n_touch = 0.;
     bool turns_back = false;
-    for (unsigned int p = 0; p < state.n_points(); ++p)
-      if (face.points[p].is_obstacle)
-        {
-          ++n_obstacles;
-          n_old_touch += old_state.multiplier[p][0] > 0.;
-          n_touch += state.multiplier[p][0] > 0.;
-        }
-      else if (state.bound[p] > 0. && std::isfinite(state.bound[p]))
+    for (const unsigned int o : face.obstacles())
+      {
+        ++n_obstacles;
+        n_old_touch += old_state.multiplier[o][0] > 0.;
+        n_touch += state.multiplier[o][0] > 0.;
+      }
+    for (const unsigned int p : face.friction_points())
+      if (state.bound[p] > 0. && std::isfinite(state.bound[p]))
         {
           const bool slipped = !old_state.sticks[p], slips = !state.sticks[p];
           ++n_points;
@@ -67,13 +67,13 @@ namespace Viscoplastic
                         std::vector<Tensor<1, 2>>(slips.size()),
                         std::vector<Tensor<1, 2>>(slips.size())};
     double      power = 0., old_power = 0.;
-    for (unsigned int p = 0; p < state.n_points(); ++p)
+    for (const unsigned int p : face.friction_points())
       {
         const Tensor<1, 2> &old = old_state.multiplier[p],
                            &now = state.multiplier[p];
         const double force      = stable_norm(now);
-        if (face.points[p].is_obstacle || old_state.sticks[p] ||
-            state.sticks[p] || force == 0. || stable_norm(old) == 0.)
+        if (old_state.sticks[p] || state.sticks[p] || force == 0. ||
+            stable_norm(old) == 0.)
           continue;
         const Tensor<1, 2> direction = now / force,
                            turn      = direction - old / stable_norm(old);
@@ -117,10 +117,9 @@ namespace Viscoplastic
              const ContactState  &state)
   {
     double slipping = 0., begun = 0.;
-    for (unsigned int p = 0; p < state.n_points(); ++p)
-      if (const double bound = state.bound[p]; !face.points[p].is_obstacle &&
-                                               std::isfinite(bound) &&
-                                               !state.sticks[p])
+    for (const unsigned int p : face.friction_points())
+      if (const double bound = state.bound[p];
+          std::isfinite(bound) && !state.sticks[p])
         {
           slipping += bound;
           if (old_state.sticks[p] ||

@@ -37,29 +37,6 @@ namespace Viscoplastic
 
 
 
-    /// Update slips from the increment. Slipping points that do not move stick.
-    void
-    update_slips(const ContactLayout  &face,
-                 const Vector<double> &x,
-                 ContactState         &state)
-    {
-      for (unsigned int p = 0; p < face.points.size(); ++p)
-        {
-          const ContactLayout::Point &point = face.points[p];
-          state.slip[p]                     = Tensor<1, 2>();
-          if (!state.sticks[p] || point.is_obstacle)
-            state.slip[p] =
-              state.slip_with(point, p, face.node_values(x, point.node));
-          if (point.gives_way())
-            state.sticks[p] = state.penetration(p) > 0.;
-          if (!point.is_obstacle && state.bound[p] > 0. &&
-              state.slip[p].norm() == 0.)
-            state.sticks[p] = true;
-        }
-    }
-
-
-
     /// Bring points to rest whose slip is at most @p rounding in the energy
     /// norm, since its meaningless direction would be that of a force of the
     /// size of the bound. Changes @p x and @p change alike.
@@ -88,9 +65,7 @@ namespace Viscoplastic
           if (!face.has_plain_friction(node))
             continue;
           face.set_node_values(here - part, node, x);
-          face.set_node_values(face.node_values(change, node) - part,
-                               node,
-                               change);
+          face.add_node_values(-part, node, change);
         }
     }
   } // namespace
@@ -224,7 +199,10 @@ namespace Viscoplastic
       face, diagonal, 0.01 * bulk.scale.rounding_error, x, change, state);
     bulk.move_face(change);
     residual = bulk.face_residual();
-    update_slips(face, x, state);
+    for (unsigned int p = 0; p < face.points.size(); ++p)
+      state.set_slip(face.points[p],
+                     p,
+                     face.node_values(x, face.points[p].node));
   }
 
 
@@ -233,9 +211,7 @@ namespace Viscoplastic
   {
     const auto sets = [&] {
       unsigned int mask = 0;
-      for (unsigned int p = face.first_point[node];
-           p < face.first_point[node + 1];
-           ++p)
+      for (const unsigned int p : face.node_points(node))
         mask = 2 * mask + state.sticks[p];
       return mask;
     };
@@ -248,12 +224,11 @@ namespace Viscoplastic
     // Where pieces meet and one is compliant, what each piece holds drifts in
     // sweeps with Coulomb's law at the node, which serve to find the sets.
     // Every other sweep has fixed bounds and leaves the rest to corrections.
-    const bool bounds_rest =
-      report.iterations >= unsettled_corrections &&
-      report.iterations % 2 == 1 && !face.has_plain_friction(node) &&
-      std::any_of(face.points.begin() + face.first_point[node],
-                  face.points.begin() + face.first_point[node + 1],
-                  [](const auto &point) { return point.gives_way(); });
+    const auto compliant   = face.compliant(face.obstacles(node));
+    const bool bounds_rest = report.iterations >= unsettled_corrections &&
+                             report.iterations % 2 == 1 &&
+                             !face.has_plain_friction(node) &&
+                             !compliant.empty();
     if (!bounds || !bounds->nodes_obey_law() || bounds_rest)
       now = Viscoplastic::relax_node(face, node, inverse, f, state);
     else
@@ -269,15 +244,13 @@ namespace Viscoplastic
     // Skip steps that are rounding, which the bulk would have to follow.
     // Rounding is relative to the penetration, too, if that is deep.
     double size = old.norm();
-    for (unsigned int p = face.first_point[node];
-         p < face.first_point[node + 1];
-         ++p)
-      if (const ContactLayout::Point &point = face.points[p]; point.gives_way())
-        size = std::max(size, std::abs(state.bound[p]) / point.map[0].norm());
+    for (const unsigned int o : compliant)
+      size =
+        std::max(size, std::abs(state.gap(o)) / face.points[o].map[0].norm());
     if (step.norm() <= rounding[node] * size && sets() == old_sets)
       return;
     face.set_node_values(*now, node, x);
-    face.set_node_values(face.node_values(change, node) + step, node, change);
+    face.add_node_values(step, node, change);
     matrix.subtract(node, step, residual);
   }
 

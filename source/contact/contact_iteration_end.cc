@@ -35,10 +35,10 @@ namespace Viscoplastic
     all_do_the_same(const ContactLayout &face, const ContactState &state)
     {
       std::array<bool, 4> any{};
-      for (unsigned int p = 0; p < state.n_points(); ++p)
-        if (face.points[p].is_obstacle)
-          any[state.sticks[p] ? 2 : 3] = true;
-        else if (state.bound[p] > 0.)
+      for (const unsigned int o : face.obstacles())
+        any[state.sticks[o] ? 2 : 3] = true;
+      for (const unsigned int p : face.friction_points())
+        if (state.bound[p] > 0.)
           any[state.sticks[p] ? 0 : 1] = true;
       for (unsigned int kind = 0; kind < (face.has_obstacles ? 4 : 2); ++kind)
         any[kind] = face.any(any[kind]);
@@ -122,25 +122,23 @@ namespace Viscoplastic
     for (const auto &[point, multiplier] : certificate.replaced)
       state.multiplier[point] = multiplier;
     // Remove pressures that are rounding, from which bounds would follow.
-    for (unsigned int p = 0; p < face.points.size(); ++p)
-      if (face.points[p].is_obstacle)
-        {
-          const ContactLayout::Point &point = face.points[p];
-          const double                stiffness =
-            point.map[0] * (diagonal[point.node] * point.map[0]);
-          // On a soft foundation, rounding of displacements makes less force.
-          const double share =
-            point.gives_way() ?
-              std::min(1.,
-                       point.compliance.slope(state.penetration(p)) /
-                         stiffness) :
-              1.;
-          if (state.multiplier[p][0] <= share * blur * std::sqrt(stiffness))
-            {
-              state.multiplier[p][0] = 0.;
-              state.sticks[p]        = false;
-            }
-        }
+    for (const unsigned int o : face.obstacles())
+      {
+        const ContactLayout::Point &point = face.points[o];
+        const double                stiffness =
+          point.map[0] * (diagonal[point.node] * point.map[0]);
+        // On a soft foundation, rounding of displacements makes less force.
+        const double share =
+          point.compliance.is_rigid() ?
+            1. :
+            std::min(1.,
+                     point.compliance.slope(state.penetration(o)) / stiffness);
+        if (state.multiplier[o][0] <= share * blur * std::sqrt(stiffness))
+          {
+            state.multiplier[o][0] = 0.;
+            state.sticks[o]        = false;
+          }
+      }
     return true;
   }
 
@@ -198,12 +196,14 @@ namespace Viscoplastic
     // Such stiffness turns rounding of displacements into any force.
     constexpr double beyond_rounding = 1e13;
     double           stiffest        = 0.;
-    for (unsigned int p = 0; p < face.points.size(); ++p)
-      if (const ContactLayout::Point &point = face.points[p]; point.gives_way())
-        stiffest = std::max(stiffest,
-                            point.compliance.slope(state.penetration(p)) *
+    for (const unsigned int o : face.obstacles())
+      {
+        const ContactLayout::Point &point = face.points[o];
+        stiffest                          = std::max(stiffest,
+                            point.compliance.slope(state.penetration(o)) *
                               (point.map[0] *
                                (inverse_diagonal[point.node] * point.map[0])));
+      }
     stiffest = Utilities::MPI::max(stiffest, face.communicator);
     if (stiffest > beyond_rounding)
       message << "the foundation is " << stiffest

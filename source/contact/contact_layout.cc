@@ -8,17 +8,13 @@ namespace Viscoplastic
   bool
   ContactLayout::has_plain_friction(const unsigned int node) const
   {
-    const unsigned int begin = first_point[node], end = first_point[node + 1];
-    if (begin == end || points[begin].is_obstacle)
+    if (friction_points(node).size() != 1)
       return false;
-    for (unsigned int p = begin + 1; p < end; ++p)
-      {
-        if (!points[p].is_obstacle)
+    const Point &friction = points[first_point[node]];
+    for (const unsigned int o : obstacles(node))
+      for (unsigned int i = 0; i < friction.n_tangents; ++i)
+        if (friction.map[i] * points[o].map[0] != 0.)
           return false;
-        for (unsigned int i = 0; i < points[begin].n_tangents; ++i)
-          if (points[begin].map[i] * points[p].map[0] != 0.)
-            return false;
-      }
     return true;
   }
 
@@ -104,6 +100,21 @@ namespace Viscoplastic
 
 
 
+  void
+  ContactState::set_slip(const ContactLayout::Point &point,
+                         const unsigned int          p,
+                         const Tensor<1, 3>         &x)
+  {
+    slip[p] =
+      !sticks[p] || point.is_obstacle ? slip_with(point, p, x) : Tensor<1, 2>();
+    if (!point.compliance.is_rigid())
+      sticks[p] = penetration(p) > 0.;
+    else if (!point.is_obstacle && bound[p] > 0. && slip[p].norm() == 0.)
+      sticks[p] = true;
+  }
+
+
+
   Tensor<1, 2>
   ContactState::multiplier_of_slip(const ContactLayout::Point &point,
                                    const unsigned int          p) const
@@ -115,7 +126,4 @@ namespace Viscoplastic
       result = slip[p] * (bound[p] / size);
     return result;
   }
-
-
-
 } // namespace Viscoplastic

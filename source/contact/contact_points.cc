@@ -111,29 +111,6 @@ namespace Viscoplastic
 
 
 
-  namespace
-  {
-    /// The same for an obstacle that the free node passes by @p free_w: the
-    /// multiplier that stops it there, or the force of a compliant obstacle.
-    PointSolution
-    solve_obstacle(const ContactLayout::Point &obstacle,
-                   const double                flexibility,
-                   const double                free_w)
-    {
-      PointSolution solution;
-      solution.sticks = free_w > 0.;
-      if (solution.sticks)
-        solution.multiplier[0] =
-          obstacle.gives_way() ?
-            obstacle.compliance.force(
-              obstacle.compliance.penetration(flexibility, free_w)) :
-            free_w / flexibility;
-      return solution;
-    }
-  } // namespace
-
-
-
   PointSolution
   solve_point(const ContactLayout &face,
               const unsigned int   p,
@@ -149,14 +126,16 @@ namespace Viscoplastic
         of_point[i][j] = point.map[i] * (flexibility * point.map[j]);
     const Tensor<1, 2> free_motion =
       state.slip_with(point, p, start + flexibility * force);
-    if (point.is_obstacle)
-      return solve_obstacle(point,
-                            of_point[0][0],
-                            free_motion[0] - state.bound[p]);
-    return solve_friction_point(of_point,
-                                free_motion,
-                                point.n_tangents,
-                                state.bound[p]);
+    if (!point.is_obstacle)
+      return solve_friction_point(of_point,
+                                  free_motion,
+                                  point.n_tangents,
+                                  state.bound[p]);
+    const double  free_w = free_motion[0] - state.gap(p);
+    PointSolution solution{{}, free_w > 0.};
+    solution.multiplier[0] =
+      point.compliance.stopping_force(of_point[0][0], free_w);
+    return solution;
   }
 
 
@@ -220,12 +199,11 @@ namespace Viscoplastic
     const unsigned int end      = face.first_point[node + 1];
     const unsigned int obstacle = face.first_obstacle(node);
     const Tensor<1, 3> nothing;
-    const bool         is_plain = face.has_plain_friction(node);
+    const bool has_single_obstacle = face.is_plain(node) && obstacle < end;
 
     Tensor<1, 3> x, normal;
     double       distance = 0.;
-    if (end - obstacle == 1 && (is_plain || begin == obstacle) &&
-        !face.points[obstacle].gives_way())
+    if (has_single_obstacle && face.points[obstacle].compliance.is_rigid())
       {
         // J is convex, so the obstacle is touched if the minimum without it is
         // beyond it, and has no influence otherwise.
@@ -233,13 +211,13 @@ namespace Viscoplastic
         relax_points(
           face, begin, obstacle, inverse_diagonal, nothing, force, state, x);
         state.multiplier[obstacle] = Tensor<1, 2>();
-        state.sticks[obstacle]     = slip(point, x)[0] > state.bound[obstacle];
+        state.sticks[obstacle]     = slip(point, x)[0] > state.gap(obstacle);
         if (state.sticks[obstacle])
           {
             // Minimize on the plane of the obstacle.
             const Tensor<1, 3> response = inverse_diagonal * point.map[0];
             const double       size     = point.map[0] * response;
-            distance                    = state.bound[obstacle];
+            distance                    = state.gap(obstacle);
             normal = point.map[0] / point.map[0].norm_square();
             relax_points(face,
                          begin,
@@ -267,12 +245,11 @@ namespace Viscoplastic
             x = *minimum;
         // The penetration of a stiff compliant obstacle is more accurate if it
         // is computed from its force.
-        if (end - obstacle == 1 && (is_plain || begin == obstacle) &&
-            state.multiplier[obstacle][0] > 0.)
+        if (has_single_obstacle && state.multiplier[obstacle][0] > 0.)
           {
             const ContactLayout::Point &point = face.points[obstacle];
             const double                end_of_way =
-              state.bound[obstacle] +
+              state.gap(obstacle) +
               point.compliance.penetration(state.multiplier[obstacle][0]);
             x += (end_of_way - point.map[0] * x) / point.map[0].norm_square() *
                  point.map[0];
@@ -281,7 +258,7 @@ namespace Viscoplastic
 
     // A node all of whose components are held moves with the foundation,
     // without rounding: not at all if the foundation is at rest.
-    if (is_plain && state.sticks[begin] &&
+    if (face.has_plain_friction(node) && state.sticks[begin] &&
         face.points[begin].n_tangents + (normal.norm() > 0. ? 1 : 0) ==
           face.n_node_dofs(node))
       return distance * normal +
@@ -300,15 +277,13 @@ namespace Viscoplastic
   {
     for (unsigned int node = 0; node < face.n_nodes(); ++node)
       {
-        const unsigned int begin   = face.first_point[node];
-        const unsigned int end     = face.first_point[node + 1];
         const Tensor<1, 3> total   = face.node_values(residual, node);
         Tensor<1, 3>       missing = total;
-        if (end - begin == 1 ||
-            (end - begin == 2 && face.has_plain_friction(node)))
+        if (face.is_plain(node))
           // The rows of the points are orthogonal: clip the residual, at
           // obstacles first, since bounds depend on their pressures.
-          for (unsigned int p = end; p-- > begin;)
+          for (unsigned int p = face.first_point[node + 1];
+               p-- > face.first_point[node];)
             {
               const ContactLayout::Point &point      = face.points[p];
               Tensor<1, 2>               &multiplier = state.multiplier[p];
@@ -345,7 +320,7 @@ namespace Viscoplastic
     {
       const ContactLayout::Point &point = face.points[p];
       const double                w     = state.penetration(p);
-      if (!point.gives_way() || !(w > 0.))
+      if (!(w > 0.))
         return;
       const Tensor<1, 3> &normal = point.map[0];
       const Tensor<1, 3>  force =
@@ -363,7 +338,7 @@ namespace Viscoplastic
         return;
       certificate.defect += point.compliance.defect(w, multiplier[0]);
       certificate.replaced.emplace_back(p, multiplier);
-      face.set_node_values(force + (multiplier[0] - old) * normal,
+      face.add_node_values((multiplier[0] - old) * normal,
                            point.node,
                            certificate.force);
     }
@@ -382,9 +357,8 @@ namespace Viscoplastic
     Certificate result;
     result.force = force;
     // Rounding blurs the force of a stiff compliant obstacle, too.
-    if (face.has_obstacles)
-      for (unsigned int p = 0; p < face.points.size(); ++p)
-        share_misfit(face, residual, diagonal, state, p, result);
+    for (const unsigned int o : face.compliant(face.obstacles()))
+      share_misfit(face, residual, diagonal, state, o, result);
     for (unsigned int p = 0; p < face.points.size(); ++p)
       {
         const ContactLayout::Point &point = face.points[p];

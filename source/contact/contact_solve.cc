@@ -32,11 +32,8 @@ namespace Viscoplastic
         if (face.any(!truncation.tilt.empty()) && truncation.has_springs(face))
           break;
         for (unsigned int node = 0; node < face.n_nodes(); ++node)
-          face.set_node_values(face.node_values(force, node) +
-                                 truncation.spring[node] *
-                                   face.node_values(w, node),
-                               node,
-                               force);
+          face.add_node_values(
+            truncation.spring[node] * face.node_values(w, node), node, force);
       }
     solve.finish();
     return iterations;

@@ -60,13 +60,12 @@ namespace Viscoplastic
   {
     double sum = 0.;
     missing.assign(face.points.size(), 0.);
-    for (unsigned int p = 0; p < face.points.size(); ++p)
-      if (const ContactLayout::Point &point = face.points[p];
-          !point.is_obstacle)
-        {
-          missing[p] = law.bound(face, state, p) - state.bound[p];
-          sum += missing[p] * missing[p] * inverse_diagonal[point.node].norm();
-        }
+    for (const unsigned int p : face.friction_points())
+      {
+        missing[p] = law.bound(face, state, p) - state.bound[p];
+        sum += missing[p] * missing[p] *
+               inverse_diagonal[face.points[p].node].norm();
+      }
     missed = std::sqrt(face.sum(sum));
   }
 
@@ -87,10 +86,9 @@ namespace Viscoplastic
     // pressure on the other piece.
     for (unsigned int node = 0; node < face.n_nodes(); ++node)
       if (!face.has_plain_friction(node))
-        face.set_node_values(
-          face.node_values(after, node) -
-            turning_spring(face, node, state, inverse_diagonal) *
-              face.node_values(w, node),
+        face.add_node_values(
+          -(turning_spring(face, node, state, inverse_diagonal) *
+            face.node_values(w, node)),
           node,
           after);
     law.predict_bounds(face, after, state);

@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <tuple>
 
 namespace Viscoplastic
@@ -29,7 +30,7 @@ namespace Viscoplastic
     const unsigned int begin  = face.first_obstacle(node);
     unsigned int       result = numbers::invalid_unsigned_int;
     double             most   = 0.;
-    for (unsigned int o = begin; o < face.first_point[node + 1]; ++o)
+    for (const unsigned int o : face.obstacles(node))
       {
         bool is_across = true;
         for (unsigned int i = 0; i < face.points[point].n_tangents; ++i)
@@ -69,7 +70,7 @@ namespace Viscoplastic
                         face.points[o].compliance,
                         state.sticks[o] ? present : 0.};
     const Tensor<1, 3> free  = inverse_diagonal * force;
-    problem.free_motion[0]   = rows[0] * free - state.bound[o];
+    problem.free_motion[0]   = rows[0] * free - state.gap(o);
     const Tensor<1, 2> slips = state.slip_with(friction, p, free);
     for (unsigned int i = 0; i <= friction.n_tangents; ++i)
       {
@@ -165,9 +166,8 @@ namespace Viscoplastic
     if (end - obstacle > 1)
       {
         const double gap = rounding_of_gap * (inverse_diagonal * force).norm();
-        for (unsigned int o = obstacle; o < end; ++o)
-          if (!face.points[o].gives_way() &&
-              std::abs(face.points[o].map[0] * x - state.bound[o]) <= gap)
+        for (const unsigned int o : face.rigid(face.obstacles(node)))
+          if (std::abs(face.points[o].map[0] * x - state.gap(o)) <= gap)
             state.sticks[o] = true;
       }
     return x;
@@ -187,8 +187,8 @@ namespace Viscoplastic
         const unsigned int        obstacle = face.first_obstacle(node);
         std::optional<NodeForces> forces;
         std::vector<Tensor<1, 3>> of_force;
-        for (unsigned int p = face.first_point[node]; p < obstacle; ++p)
-          for (unsigned int o = obstacle; o < face.first_point[node + 1]; ++o)
+        for (const unsigned int p : face.friction_points(node))
+          for (const unsigned int o : face.obstacles(node))
             {
               const double coefficient = of_pressure[p][o - obstacle];
               if (state.sticks[p] || !(state.slip[p].norm() > 0.) ||
@@ -234,10 +234,9 @@ namespace Viscoplastic
         const NodeForces forces(face, node, state, this);
         if (!forces.is_free() && !face.has_plain_friction(node))
           continue;
-        const unsigned int obstacle = face.first_obstacle(node);
-        const auto         pressures =
+        const auto pressures =
           forces.pressures(face.node_values(residual, node));
-        for (unsigned int p = face.first_point[node]; p < obstacle; ++p)
+        for (const unsigned int p : face.friction_points(node))
           {
             state.bound[p] = given[p];
             for (unsigned int k = 0; k < pressures.size(); ++k)
@@ -252,14 +251,11 @@ namespace Viscoplastic
   CoulombLaw::largest_coefficient(const ContactLayout &face) const
   {
     double result = 0.;
-    for (unsigned int p = 0; p < face.points.size(); ++p)
-      if (!face.points[p].is_obstacle)
-        {
-          double sum = 0.;
-          for (const double coefficient : of_pressure[p])
-            sum += coefficient;
-          result = std::max(result, sum);
-        }
+    for (const unsigned int p : face.friction_points())
+      result = std::max(result,
+                        std::accumulate(of_pressure[p].begin(),
+                                        of_pressure[p].end(),
+                                        0.));
     return Utilities::MPI::max(result, face.communicator);
   }
 
@@ -285,22 +281,6 @@ namespace Viscoplastic
           }
       }
     };
-
-
-
-    /// The normal force at which the foundation stops a node that would
-    /// penetrate by @p free_w without it.
-    double
-    stopping_force(const NormalCompliance &compliance,
-                   const double            flexibility,
-                   const double            free_w)
-    {
-      if (!(free_w > 0.))
-        return 0.;
-      return compliance.is_rigid() ?
-               free_w / flexibility :
-               compliance.force(compliance.penetration(flexibility, free_w));
-    }
   } // namespace
 
 
@@ -317,10 +297,8 @@ namespace Viscoplastic
                                   node.given + node.coefficient * p);
     };
     const auto excess = [&](const double p) {
-      const double sinks = node.compliance.is_rigid() || p == 0. ?
-                             0. :
-                             node.compliance.penetration(p);
-      return q_n - t.coupling * friction(p).multiplier - W_nn * p - sinks;
+      return q_n - t.coupling * friction(p).multiplier - W_nn * p -
+             node.compliance.penetration(p);
     };
 
     const bool may_open = !(excess(0.) > 0.);
@@ -333,9 +311,9 @@ namespace Viscoplastic
       return solve_friction_point(t.flexibility, motion, node.n_tangents, glued)
         .multiplier;
     };
-    const double stuck = stopping_force(node.compliance,
-                                        W_nn - t.coupling * held(t.coupling),
-                                        q_n - t.coupling * held(t.free_motion));
+    const double stuck =
+      node.compliance.stopping_force(W_nn - t.coupling * held(t.coupling),
+                                     q_n - t.coupling * held(t.free_motion));
     if (stuck > 0. && friction(stuck).sticks)
       return stuck;
 
@@ -360,7 +338,7 @@ namespace Viscoplastic
     // positive definite. NaNs end the search and are detected in residuals.
     double high = std::max({2. * low,
                             stuck,
-                            stopping_force(node.compliance, W_nn, q_n),
+                            node.compliance.stopping_force(W_nn, q_n),
                             node.given,
                             1e-300});
     for (unsigned int i = 0; i < 1000 && excess(high) > 0.; ++i)

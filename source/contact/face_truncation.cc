@@ -35,8 +35,7 @@ namespace Viscoplastic
                  const double                     stiffest)
   {
     Tensor<2, 3> result;
-    for (unsigned int p = face.first_point[node]; p < face.first_obstacle(node);
-         ++p)
+    for (const unsigned int p : face.friction_points(node))
       if (const ContactLayout::Point &point = face.points[p];
           point.n_tangents == 2 && state.slips(point, p))
         {
@@ -74,30 +73,26 @@ namespace Viscoplastic
         Tensor<2, 3> &projector = truncation.projector[node];
         truncation.spring[node] =
           turning_spring(face, node, state, inverse_diagonal, stiffest);
-        for (unsigned int p = face.first_point[node];
-             p < face.first_point[node + 1];
-             ++p)
-          {
-            const ContactLayout::Point &point = face.points[p];
-            if (point.gives_way())
-              truncation.spring[node] +=
-                spring_along(point.map[0],
-                             point.compliance.slope(state.penetration(p)),
-                             node,
-                             inverse_diagonal,
-                             stiffest);
-            else if (state.blocks(point, p))
-              for (unsigned int i = 0; i < point.n_tangents; ++i)
-                {
-                  // Remove the part of this direction that is still free.
-                  Tensor<1, 3> q = projector * point.map[i];
-                  if (q.norm() > 1e-8 * point.map[i].norm())
-                    {
-                      q /= q.norm();
-                      projector -= outer_product(q, q);
-                    }
-                }
-          }
+        for (const unsigned int o : face.compliant(face.obstacles(node)))
+          truncation.spring[node] +=
+            spring_along(face.points[o].map[0],
+                         face.points[o].compliance.slope(state.penetration(o)),
+                         node,
+                         inverse_diagonal,
+                         stiffest);
+        for (const unsigned int p : face.node_points(node))
+          if (const ContactLayout::Point &point = face.points[p];
+              state.blocks(point, p))
+            for (unsigned int i = 0; i < point.n_tangents; ++i)
+              {
+                // Remove the part of this direction that is still free.
+                Tensor<1, 3> q = projector * point.map[i];
+                if (q.norm() > 1e-8 * point.map[i].norm())
+                  {
+                    q /= q.norm();
+                    projector -= outer_product(q, q);
+                  }
+              }
         // Remove rounding, so that equal sets compare equal.
         for (unsigned int i = 0; i < 3; ++i)
           for (unsigned int j = 0; j < 3; ++j)

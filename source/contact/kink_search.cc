@@ -72,58 +72,42 @@ namespace Viscoplastic
                const Vector<double> &direction)
     {
       FaceAlongLine line{face, {}, {}};
-      for (unsigned int p = 0; p < face.points.size(); ++p)
-        {
-          const ContactLayout::Point &point  = face.points[p];
-          const auto                  change = [&] {
-            return slip(point, face.node_values(direction, point.node));
-          };
-          if (point.gives_way())
-            line.springs.push_back(
-              {point.compliance, state.penetration(p), change()[0]});
-          else if (state.slips(point, p))
-            line.terms.push_back({state.bound[p], state.slip[p], change()});
-        }
+      const auto    change = [&](const unsigned int p) {
+        const ContactLayout::Point &point = face.points[p];
+        return slip(point, face.node_values(direction, point.node));
+      };
+      for (const unsigned int p : face.friction_points())
+        if (state.slips(face.points[p], p))
+          line.terms.push_back({state.bound[p], state.slip[p], change(p)});
+      for (const unsigned int o : face.compliant(face.obstacles()))
+        line.springs.push_back(
+          {face.points[o].compliance, state.penetration(o), change(o)[0]});
       return line;
     }
 
 
 
-    /// How far a node may go, and goes with a correction, toward an obstacle
-    /// that it does not touch yet; it meets the obstacle if `goes` > `may`.
-    struct Approach
-    {
-      double may, goes;
-    };
-
-    Approach
+    /// How far a correction takes a node toward an obstacle.
+    double
     approach(const ContactLayout  &face,
-             const ContactState   &state,
              const Vector<double> &w,
-             const unsigned int    p)
+             const unsigned int    o)
     {
-      const ContactLayout::Point &point = face.points[p];
-      return {std::max(0., state.bound[p] - state.slip[p][0]),
-              slip(point, face.node_values(w, point.node))[0]};
+      return slip(face.points[o], face.node_values(w, face.points[o].node))[0];
     }
 
 
 
-    /// Whether a correction takes a node beyond the rigid obstacle @p p. False
+    /// Whether a correction takes a node beyond the rigid obstacle @p o. False
     /// at corners, where points share a node: they are left to the line search.
     bool
     meets(const ContactLayout  &face,
           const ContactState   &state,
           const Vector<double> &w,
-          const unsigned int    p)
+          const unsigned int    o)
     {
-      const unsigned int node = face.points[p].node;
-      if (state.sticks[p] || face.points[p].gives_way() ||
-          face.first_point[node + 1] - face.first_obstacle(node) != 1 ||
-          !(face.first_point[node] == p || face.has_plain_friction(node)))
-        return false;
-      const Approach to = approach(face, state, w, p);
-      return to.goes > to.may;
+      return face.is_plain(face.points[o].node) &&
+             approach(face, w, o) > state.room(face.points[o], o);
     }
 
 
@@ -139,13 +123,9 @@ namespace Viscoplastic
       double result = most;
       if (!face.has_obstacles)
         return result;
-      for (unsigned int p = 0; p < face.points.size(); ++p)
-        if (face.points[p].is_rigid_obstacle() && !state.sticks[p])
-          {
-            const Approach to = approach(face, state, w, p);
-            if (to.goes > 0.)
-              result = std::min(result, to.may / to.goes);
-          }
+      for (const unsigned int o : face.obstacles())
+        if (const double goes = approach(face, w, o); goes > 0.)
+          result = std::min(result, state.room(face.points[o], o) / goes);
       return Utilities::MPI::min(result, face.communicator);
     }
 
@@ -181,13 +161,11 @@ namespace Viscoplastic
                        const unsigned int    node,
                        Tensor<1, 3>         &here)
     {
-      const unsigned int p              = face.first_point[node],
-                         end            = face.first_point[node + 1],
-                         first_obstacle = face.first_obstacle(node);
-      bool stops                        = false;
+      const unsigned int p     = face.first_point[node];
+      bool               stops = false;
       if (reverses(face, state, w, node))
         {
-          if (first_obstacle == end)
+          if (face.obstacles(node).empty())
             here = motion_with_slip(face.points[p], state.foundation_step[p]) -
                    face.node_values(x, node);
           else
@@ -196,11 +174,11 @@ namespace Viscoplastic
                                state.slip[p] + slip(face.points[p], here));
           stops = true;
         }
-      for (unsigned int o = first_obstacle; o < end; ++o)
+      for (const unsigned int o : face.obstacles(node))
         if (meets(face, state, w, o))
           {
             const Tensor<1, 3> &normal = face.points[o].map[0];
-            here += (approach(face, state, w, o).may - normal * here) /
+            here += (state.room(face.points[o], o) - normal * here) /
                     normal.norm_square() * normal;
             stops = true;
           }
@@ -329,16 +307,14 @@ namespace Viscoplastic
             state.sticks[p] = true;
             state.slip[p]   = Tensor<1, 2>();
           }
-        for (unsigned int o = face.first_obstacle(node);
-             o < face.first_point[node + 1];
-             ++o)
+        for (const unsigned int o : face.obstacles(node))
           if (meets(face, old_state, w, o))
             {
               state.sticks[o]  = true;
-              state.slip[o][0] = state.bound[o];
+              state.slip[o][0] = state.gap(o);
             }
         face.set_node_values(step, node, change);
-        face.set_node_values(face.node_values(x, node) + step, node, x);
+        face.add_node_values(step, node, x);
       }
     return face.sum(energy_change);
   }
@@ -432,12 +408,10 @@ namespace Viscoplastic
         const double first = largest_step(face, held, result.correction, 1.);
         if (!(first < least))
           return result;
-        for (unsigned int p = 0; p < face.points.size(); ++p)
-          if (face.points[p].is_rigid_obstacle() && !held.sticks[p])
-            {
-              const Approach to = approach(face, state, result.correction, p);
-              held.sticks[p] = to.goes > 0. && to.may <= near * first * to.goes;
-            }
+        for (const unsigned int o : face.obstacles())
+          if (const double goes = approach(face, result.correction, o);
+              goes > 0. && state.room(face.points[o], o) <= near * first * goes)
+            held.sticks[o] = true;
         const double   before = result.search.energy_change;
         FaceTruncation next   = make_truncation(face, held, inverse_diagonal);
         solve(next);

@@ -228,7 +228,7 @@ namespace Viscoplastic
     for (unsigned int p = begin; p < end; ++p)
       {
         Tensor<1, 2> lambda;
-        if (face.points[p].gives_way())
+        if (p >= obstacle)
           lambda[0] = face.points[p].compliance.force(state.penetration(p));
         else if (slips(p))
           if (const double given = given_bound(p); given > 0.)
@@ -317,7 +317,7 @@ namespace Viscoplastic
   NodeForces::pressures_of_force() const
   {
     const unsigned int n = end - obstacle;
-    if (n == 1 && (begin == obstacle || face.has_plain_friction(node)))
+    if (n == 1 && face.is_plain(node))
       {
         const Tensor<1, 3> &normal = face.points[obstacle].map[0];
         return {state.sticks[obstacle] ? normal / normal.norm_square() :
@@ -422,7 +422,7 @@ namespace Viscoplastic
       {
         Tensor<1, 3>       unit   = face.points[o].map[0];
         const Tensor<1, 3> normal = free * unit;
-        const bool         gives_way =
+        const bool         is_free_spring =
           is_spring(o) && normal.norm() > 1e-8 * unit.norm();
         for (unsigned int p = begin; p < obstacle; ++p)
           if (slips(p))
@@ -434,12 +434,12 @@ namespace Viscoplastic
               if (takes_part(o))
                 tilt -=
                   bound * outer_product(along, changes.of_force[o - obstacle]);
-              for (unsigned int j = obstacle; gives_way && j < end; ++j)
+              for (unsigned int j = obstacle; is_free_spring && j < end; ++j)
                 bound += law->of_pressure[p][j - obstacle] *
                          changes.of_spring[o - obstacle][j - obstacle];
               unit += bound * along;
             }
-        if (gives_way)
+        if (is_free_spring)
           {
             springs.push_back(o - obstacle);
             normals.push_back(normal);

@@ -70,11 +70,23 @@ namespace Viscoplastic
       bool
       has_friction(const unsigned int p) const
       {
-        return !face.points[p].is_obstacle && state.bound[p] > 0.;
+        return p < obstacle && state.bound[p] > 0.;
+      }
+
+      ContactLayout::Range
+      obstacles() const
+      {
+        return {obstacle, end};
+      }
+
+      double
+      penetration(const unsigned int o, const Tensor<1, 3> &x) const
+      {
+        return slip(face.points[o], x)[0] - state.gap(o);
       }
 
       const ContactLayout &face;
-      const unsigned int   begin, end;
+      const unsigned int   begin, obstacle, end;
       const Tensor<2, 3>  &stiffness;
       const Tensor<1, 3>  &force;
       const ContactState  &state;
@@ -96,6 +108,7 @@ namespace Viscoplastic
                              const ContactState  &state)
       : face(face)
       , begin(face.first_point[node])
+      , obstacle(face.first_obstacle(node))
       , end(face.first_point[node + 1])
       , stiffness(stiffness)
       , force(force)
@@ -106,12 +119,11 @@ namespace Viscoplastic
       for (unsigned int p = begin; p < end; ++p)
         {
           const ContactLayout::Point &point = face.points[p];
-          size =
-            std::max(size,
-                     (point.is_obstacle ? -state.bound[p] :
-                                          state.foundation_step[p].norm()) /
-                       point.map[0].norm());
-          if (has_friction(p) || point.is_rigid_obstacle())
+          size                              = std::max(size,
+                          (p < obstacle ? state.foundation_step[p].norm() :
+                                                                       -state.gap(p)) /
+                            point.map[0].norm());
+          if (p < obstacle ? has_friction(p) : point.compliance.is_rigid())
             holders.push_back(p);
         }
       negligible = std::max(rounding * size, 1e-100);
@@ -137,10 +149,7 @@ namespace Viscoplastic
             for (unsigned int row = 0; row < point.n_tangents; ++row)
               {
                 const Tensor<1, 3> &map = point.map[row];
-                const double        missing =
-                  (point.is_obstacle ? state.bound[p] :
-                                       state.foundation_step[p][row]) -
-                  map * start;
+                const double missing = state.place(point, p)[row] - map * start;
                 // The part of this direction that is still free.
                 Tensor<1, 3> q    = projector * map;
                 const double size = q.norm();
@@ -154,8 +163,7 @@ namespace Viscoplastic
                   return false;
               }
           }
-        else if (!face.points[holders[i]].is_obstacle &&
-                 state.bound[holders[i]] > 1e300)
+        else if (has_friction(holders[i]) && state.bound[holders[i]] > 1e300)
           return false; // a glued point
       return true;
     }
@@ -168,36 +176,34 @@ namespace Viscoplastic
       Tensor<1, 3> result = stiffness * x - force;
       if (hessian != nullptr)
         *hessian = stiffness;
-      for (unsigned int p = begin; p < end; ++p)
+      for (unsigned int p = begin; p < obstacle; ++p)
+        if (has_friction(p) && !is_held[p - begin])
+          {
+            const ContactLayout::Point &point = face.points[p];
+            const Tensor<1, 2>          s     = state.slip_with(point, p, x);
+            const double                size  = s.norm();
+            const double spring = state.bound[p] / std::max(size, negligible);
+            result += spring * node_force(point, s);
+            if (hessian == nullptr)
+              continue;
+            if (size <= negligible)
+              for (unsigned int i = 0; i < point.n_tangents; ++i)
+                *hessian += spring * outer_product(point.map[i], point.map[i]);
+            else if (point.n_tangents == 2)
+              {
+                const Tensor<1, 3> across =
+                  (s[0] * point.map[1] - s[1] * point.map[0]) / size;
+                *hessian += spring * outer_product(across, across);
+              }
+          }
+      for (const unsigned int o : face.compliant(obstacles()))
         {
-          const ContactLayout::Point &point = face.points[p];
-          const Tensor<1, 2>          s     = state.slip_with(point, p, x);
-          if (point.gives_way())
-            {
-              const double w = s[0] - state.bound[p];
-              result += point.compliance.force(w) * point.map[0];
-              if (hessian != nullptr)
-                *hessian += point.compliance.slope(w) *
-                            outer_product(point.map[0], point.map[0]);
-            }
-          else if (has_friction(p) && !is_held[p - begin])
-            {
-              const double size   = s.norm();
-              const double spring = state.bound[p] / std::max(size, negligible);
-              result += spring * node_force(point, s);
-              if (hessian == nullptr)
-                continue;
-              if (size <= negligible)
-                for (unsigned int i = 0; i < point.n_tangents; ++i)
-                  *hessian +=
-                    spring * outer_product(point.map[i], point.map[i]);
-              else if (point.n_tangents == 2)
-                {
-                  const Tensor<1, 3> across =
-                    (s[0] * point.map[1] - s[1] * point.map[0]) / size;
-                  *hessian += spring * outer_product(across, across);
-                }
-            }
+          const ContactLayout::Point &point = face.points[o];
+          const double                w     = penetration(o, x);
+          result += point.compliance.force(w) * point.map[0];
+          if (hessian != nullptr)
+            *hessian += point.compliance.slope(w) *
+                        outer_product(point.map[0], point.map[0]);
         }
       return result;
     }
@@ -304,21 +310,23 @@ namespace Viscoplastic
             break;
         }
 
-      Candidate result{x, is_held};
-      for (unsigned int p = begin; p < end; ++p)
-        {
-          const ContactLayout::Point &point = face.points[p];
-          if (is_held[p - begin] || point.gives_way())
-            continue;
-          const Tensor<1, 2> s    = state.slip_with(point, p, x);
-          const double       room = negligible * point.map[0].norm();
-          if (point.is_obstacle ? s[0] > state.bound[p] + room :
-                                  has_friction(p) && !(s.norm() > room))
-            return {};
-          // An obstacle that is touched without being held may press, too.
-          result.is_held[p - begin] =
-            point.is_obstacle && s[0] >= state.bound[p] - room;
-        }
+      Candidate  result{x, is_held};
+      const auto room = [&](const unsigned int p) {
+        return negligible * face.points[p].map[0].norm();
+      };
+      for (unsigned int p = begin; p < obstacle; ++p)
+        if (has_friction(p) && !is_held[p - begin] &&
+            !(state.slip_with(face.points[p], p, x).norm() > room(p)))
+          return {};
+      for (const unsigned int o : face.rigid(obstacles()))
+        if (!is_held[o - begin])
+          {
+            const double s = slip(face.points[o], x)[0];
+            if (s > state.gap(o) + room(o))
+              return {};
+            // An obstacle that is touched without being held may press, too.
+            result.is_held[o - begin] = s >= state.gap(o) - room(o);
+          }
       return result;
     }
 
@@ -330,23 +338,22 @@ namespace Viscoplastic
       const Tensor<1, 3> change = to.x - from.x;
       double             result = change * (stiffness * from.x - force) +
                       0.5 * change * (stiffness * change);
-      for (unsigned int p = begin; p < end; ++p)
+      for (unsigned int p = begin; p < obstacle; ++p)
         {
-          const ContactLayout::Point &point = face.points[p];
-          const auto slip_of                = [&](const Candidate &candidate) {
-            return candidate.is_held[p - begin] && !point.is_obstacle ?
-                                    Tensor<1, 2>() :
-                                    state.slip_with(point, p, candidate.x);
+          const auto slip_of = [&](const Candidate &candidate) {
+            return candidate.is_held[p - begin] ?
+                     Tensor<1, 2>() :
+                     state.slip_with(face.points[p], p, candidate.x);
           };
           const Tensor<1, 2> s_from = slip_of(from), s_to = slip_of(to);
-          if (point.gives_way())
-            result += point.compliance.energy(s_to[0] - state.bound[p]) -
-                      point.compliance.energy(s_from[0] - state.bound[p]);
-          else if (const double sum = s_from.norm() + s_to.norm();
-                   has_friction(p) && sum > 0.)
+          if (const double sum = s_from.norm() + s_to.norm();
+              has_friction(p) && sum > 0.)
             result +=
               state.bound[p] * ((s_from + s_to) * (s_to - s_from)) / sum;
         }
+      for (const unsigned int o : face.compliant(obstacles()))
+        result += face.points[o].compliance.energy(penetration(o, to.x)) -
+                  face.points[o].compliance.energy(penetration(o, from.x));
       return result;
     }
   } // namespace
@@ -376,14 +383,14 @@ namespace Viscoplastic
       }
     if (!best)
       return {};
-    const unsigned int begin = face.first_point[node];
-    for (unsigned int p = begin; p < face.first_point[node + 1]; ++p)
+    for (const unsigned int p : face.node_points(node))
       {
         const ContactLayout::Point &point = face.points[p];
         const Tensor<1, 2>          s     = state.slip_with(point, p, best->x);
-        state.sticks[p] =
-          point.gives_way() ? s[0] > state.bound[p] : best->is_held[p - begin];
-        state.multiplier[p] = Tensor<1, 2>();
+        state.sticks[p]                   = point.compliance.is_rigid() ?
+                                              best->is_held[p - face.first_point[node]] :
+                                              s[0] > state.gap(p);
+        state.multiplier[p]               = Tensor<1, 2>();
         if (state.slips(point, p))
           state.multiplier[p] = s * (state.bound[p] / s.norm());
       }

@@ -42,6 +42,8 @@ namespace Viscoplastic
   double
   NormalCompliance::penetration(const double p) const
   {
+    if (is_rigid() || !(p > 0.))
+      return 0.;
     // At the root no piece carries more than p.
     double most = std::numeric_limits<double>::max();
     for (const Piece &piece : pieces)
@@ -56,14 +58,18 @@ namespace Viscoplastic
 
 
   double
-  NormalCompliance::penetration(const double flexibility,
-                                const double free_w) const
+  NormalCompliance::stopping_force(const double flexibility,
+                                   const double free_w) const
   {
+    if (!(free_w > 0.))
+      return 0.;
+    if (is_rigid())
+      return free_w / flexibility;
     // At the root w <= free_w and flexibility p(w) <= free_w.
-    return root_below(
+    return force(root_below(
       std::min(free_w, penetration(free_w / flexibility)),
       [&](const double w) { return w + flexibility * force(w) - free_w; },
-      [&](const double w) { return 1. + flexibility * slope(w); });
+      [&](const double w) { return 1. + flexibility * slope(w); }));
   }
 
 
@@ -71,7 +77,7 @@ namespace Viscoplastic
   double
   NormalCompliance::defect(const double w, const double p) const
   {
-    const double there = p > 0. ? penetration(p) : 0.;
+    const double there = penetration(p);
     return 0.5 * std::max(slope(w), slope(there)) * (w - there) * (w - there);
   }
 } // namespace Viscoplastic

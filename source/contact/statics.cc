@@ -376,11 +376,13 @@ namespace Viscoplastic
           {
             const ContactLayout::Point &point = face.points[p];
             const Tensor<1, 2> multiplier = state.multiplier_of_slip(point, p);
-            if (point.gives_way())
-              add(stiffness, p, point.compliance.slope(state.penetration(p)));
             for (unsigned int i = 0; i < n; ++i)
               force[i] -= multiplier * works[p][i];
           }
+        for (const unsigned int o : face.compliant(face.obstacles()))
+          add(stiffness,
+              o,
+              face.points[o].compliance.slope(state.penetration(o)));
         Utilities::MPI::sum(force, face.communicator, force);
         Utilities::MPI::sum(stiffness, face.communicator, stiffness);
         const double size = norm(body.load) + norm(force);

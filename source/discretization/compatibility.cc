@@ -107,21 +107,20 @@ namespace Viscoplastic
     {
       DistributedVector in_frames = space.owned_vector();
       space.to_frames(u, in_frames);
-      double size = u.linfty_norm(), deepest = 0.;
-      for (unsigned int p = 0; p < contact.n_points(); ++p)
-        if (face.layout().points[p].is_obstacle)
-          size = std::max(size, std::abs(contact.bound[p]));
+      double               size = u.linfty_norm(), deepest = 0.;
+      const ContactLayout &layout = face.layout();
+      for (const unsigned int o : layout.obstacles())
+        size = std::max(size, std::abs(contact.gap(o)));
       size = Utilities::MPI::max(size, space.communicator);
 
       contact.bound = face.step_bounds(0., in_frames, {});
-      for (unsigned int p = 0; p < contact.n_points(); ++p)
-        if (face.layout().points[p].gives_way())
-          contact.sticks[p] = contact.bound[p] < 0.;
-        else if (face.layout().points[p].is_obstacle)
-          {
-            contact.sticks[p] = contact.bound[p] <= 1e-10 * size;
-            deepest           = std::max(deepest, -contact.bound[p]);
-          }
+      for (const unsigned int o : layout.compliant(layout.obstacles()))
+        contact.sticks[o] = contact.gap(o) < 0.;
+      for (const unsigned int o : layout.rigid(layout.obstacles()))
+        {
+          contact.sticks[o] = contact.gap(o) <= 1e-10 * size;
+          deepest           = std::max(deepest, -contact.gap(o));
+        }
       deepest = Utilities::MPI::max(deepest, space.communicator);
       // Between curved bodies the gap has an error that is a part of the
       // distance of surfaces from chords.

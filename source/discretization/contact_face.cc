@@ -46,7 +46,7 @@ namespace Viscoplastic
         {
           bounds_vary |= pair.second.bound_depends_on_time();
           any_obstacles |= pair.second.is_unilateral();
-          any_gives_way |= pair.second.gives_way();
+          any_compliance |= pair.second.has_normal_compliance();
           any_rate |= pair.second.slip_rate_factor.has_value();
           any_computed_pressure |= pair.second.has_computed_pressure();
         }
@@ -61,7 +61,7 @@ namespace Viscoplastic
             *space.scene.boundary.at(of_boundary.first).against);
         other_side_weights = boundary_weights(space, other_sides);
       }
-    if (any_gives_way)
+    if (any_compliance)
       make_compliance();
     make_area_shares();
   }
@@ -260,9 +260,8 @@ namespace Viscoplastic
     if (any_obstacles)
       {
         const std::vector<double> of_obstacles = sum_shares(one, true);
-        for (unsigned int p = 0; p < point_weights.size(); ++p)
-          if (layout().points[p].is_obstacle)
-            point_weights[p] = of_obstacles[p];
+        for (const unsigned int o : layout().obstacles())
+          point_weights[o] = of_obstacles[o];
       }
   }
 
@@ -276,7 +275,7 @@ namespace Viscoplastic
     for (const auto &pair : space.scene.boundary)
       {
         const BoundaryCondition<dim> &condition = pair.second;
-        if (!condition.gives_way())
+        if (!condition.has_normal_compliance())
           continue;
         const std::vector<double> stiffness = sum_shares(
           [&](const Sample &sample) {
@@ -285,12 +284,11 @@ namespace Viscoplastic
                      0.;
           },
           /* of_obstacles = */ true);
-        for (unsigned int p = 0; p < stiffness.size(); ++p)
-          if (const auto &ids = boundary_ids[p];
-              layout().points[p].is_obstacle &&
+        for (const unsigned int o : layout().obstacles())
+          if (const auto &ids = boundary_ids[o];
               std::find(ids.begin(), ids.end(), pair.first) != ids.end())
-            face_restriction.add_compliance(p,
-                                            stiffness[p],
+            face_restriction.add_compliance(o,
+                                            stiffness[o],
                                             condition.pressure_law);
       }
   }
@@ -315,14 +313,14 @@ namespace Viscoplastic
         };
         part = sum_shares(is_here);
         part.resize(point_weights.size());
-        const std::vector<double> of_obstacles =
-          any_obstacles ? sum_shares(is_here, true) : part;
-        for (unsigned int p = 0; p < part.size(); ++p)
+        if (any_obstacles)
           {
-            if (layout().points[p].is_obstacle)
-              part[p] = of_obstacles[p];
-            part[p] = point_weights[p] > 0. ? part[p] / point_weights[p] : 0.;
+            const std::vector<double> of_obstacles = sum_shares(is_here, true);
+            for (const unsigned int o : layout().obstacles())
+              part[o] = of_obstacles[o];
           }
+        for (unsigned int p = 0; p < part.size(); ++p)
+          part[p] = point_weights[p] > 0. ? part[p] / point_weights[p] : 0.;
       }
   }
 
@@ -392,12 +390,12 @@ namespace Viscoplastic
       return {};
     const ContactLayout      &face = layout();
     std::vector<Tensor<1, 2>> result(face.points.size());
-    for (unsigned int p = 0; p < result.size(); ++p)
+    for (const unsigned int p : face.friction_points())
       {
         // All pieces of a point of friction move alike, see make_nodal_frame().
         const BoundaryCondition<dim> &condition =
           space.scene.boundary.at(boundary_ids[p].front());
-        if (face.points[p].is_obstacle || !condition.foundation_motion)
+        if (!condition.foundation_motion)
           continue;
         const unsigned int   n    = face.points[p].node;
         const Node          &node = nodes[n];

@@ -48,23 +48,21 @@ namespace Viscoplastic
     // Gaps are values at the nodes. Where basis functions are not symmetric,
     // means over them would differ from linear gaps at the nodes, so that
     // linear displacements would not be exact.
-    if (any_obstacles)
-      for (unsigned int p = 0; p < result.size(); ++p)
-        if (layout().points[p].is_obstacle)
+    for (const unsigned int o : layout().obstacles())
+      {
+        result[o] = std::numeric_limits<double>::max();
+        for (const types::boundary_id id : boundary_ids[o])
           {
-            result[p] = std::numeric_limits<double>::max();
-            for (const types::boundary_id id : boundary_ids[p])
-              {
-                const Node &node      = nodes[layout().points[p].node];
-                const auto &condition = space.scene.boundary.at(id);
-                double      gap       = condition.gap(node.position, t);
-                if (condition.against)
-                  gap += initial_distance(node,
-                                          space.normal_at(node.first_dof,
-                                                          condition));
-                result[p] = std::min(result[p], gap);
-              }
+            const Node &node      = nodes[layout().points[o].node];
+            const auto &condition = space.scene.boundary.at(id);
+            double      gap       = condition.gap(node.position, t);
+            if (condition.against)
+              gap +=
+                initial_distance(node,
+                                 space.normal_at(node.first_dof, condition));
+            result[o] = std::min(result[o], gap);
           }
+      }
     if (!bounds_vary && !any_rate)
       constant_bounds = result;
     return result;
@@ -86,15 +84,13 @@ namespace Viscoplastic
       {
         const std::size_t first =
           space.owned.index_within_set(nodes[n].first_dof);
-        unsigned int o = 0;
-        for (unsigned int p = face.first_obstacle(n);
-             p < face.first_point[n + 1];
-             ++p)
+        for (const unsigned int o : face.obstacles(n))
           {
             const Obstacle<dim> &obstacle =
-              space.frame_at(nodes[n].first_dof).obstacles[o++];
+              space.frame_at(nodes[n].first_dof)
+                .obstacles[o - face.first_obstacle(n)];
             for (unsigned int d = 0; d < dim; ++d)
-              result[p] -=
+              result[o] -=
                 (obstacle.map[d] + obstacle.fixed[d]) * u.begin()[first + d];
           }
       }
@@ -110,17 +106,16 @@ namespace Viscoplastic
                                   ContactState            &state) const
   {
     const std::vector<double> distances = step_bounds(t, u);
-    for (unsigned int p = 0; p < state.n_points(); ++p)
-      if (const ContactLayout::Point &point = layout().points[p];
-          point.is_obstacle)
-        {
-          state.bound[p] = distances[p];
-          state.slip[p]  = Tensor<1, 2>();
-          if (!point.gives_way())
-            continue;
-          state.multiplier[p][0] = point.compliance.force(state.penetration(p));
-          state.sticks[p]        = state.penetration(p) > 0.;
-        }
+    for (const unsigned int o : layout().obstacles())
+      {
+        state.bound[o] = distances[o];
+        state.slip[o]  = Tensor<1, 2>();
+      }
+    for (const unsigned int o : layout().compliant(layout().obstacles()))
+      {
+        state.multiplier[o] = state.multiplier_of_slip(layout().points[o], o);
+        state.sticks[o]     = state.penetration(o) > 0.;
+      }
   }
 
 
@@ -134,14 +129,13 @@ namespace Viscoplastic
     std::vector<double> of_step = bounds(state.t, rates);
     add_computed_bounds(state.t, state.contact, of_step, rates);
     std::vector<double> sums(3, 0.);
-    for (unsigned int p = 0; p < of_step.size(); ++p)
-      if (!layout().points[p].is_obstacle)
-        {
-          const double missed = std::abs(of_step[p] - state.contact.bound[p]);
-          sums[0] += of_step[p];
-          sums[1] += missed;
-          sums[2] += missed * state.contact.slip[p].norm();
-        }
+    for (const unsigned int p : layout().friction_points())
+      {
+        const double missed = std::abs(of_step[p] - state.contact.bound[p]);
+        sums[0] += of_step[p];
+        sums[1] += missed;
+        sums[2] += missed * state.contact.slip[p].norm();
+      }
     Utilities::MPI::sum(sums, space.communicator, sums);
     return {sums[0], sums[1], sums[2]};
   }
@@ -214,9 +208,7 @@ namespace Viscoplastic
         for (unsigned int p = 0; p < bounds.size(); ++p)
           if (coefficients[p] > 0.)
             // There is no obstacle where other conditions hold the normal.
-            for (unsigned int o = face.first_obstacle(face.points[p].node);
-                 o < face.first_point[face.points[p].node + 1];
-                 ++o)
+            for (const unsigned int o : face.obstacles(face.points[p].node))
               if (const auto &ids = boundary_ids[o];
                   state.multiplier[o][0] > 0. &&
                   std::find(ids.begin(), ids.end(), id) != ids.end())
@@ -240,21 +232,18 @@ namespace Viscoplastic
     unsigned int                     n_obstacles = 0;
     for (unsigned int node = 0; node < face.n_nodes(); ++node)
       n_obstacles =
-        std::max(n_obstacles,
-                 face.first_point[node + 1] - face.first_obstacle(node));
+        std::max<unsigned int>(n_obstacles, face.obstacles(node).size());
     n_obstacles = Utilities::MPI::max(n_obstacles, face.communicator);
     for (unsigned int k = 0; k < n_obstacles; ++k)
       {
         ContactState state(std::vector<double>(result.size()));
         for (unsigned int node = 0; node < face.n_nodes(); ++node)
-          if (const unsigned int o = face.first_obstacle(node) + k;
-              o < face.first_point[node + 1])
-            state.multiplier[o][0] = 1.;
+          if (k < face.obstacles(node).size())
+            state.multiplier[face.first_obstacle(node) + k][0] = 1.;
         std::vector<double> of_pressure(result.size());
         add_computed_bounds(t, state, of_pressure, slip_rates);
         for (unsigned int p = 0; p < result.size(); ++p)
-          if (const unsigned int node = face.points[p].node;
-              face.first_obstacle(node) + k < face.first_point[node + 1])
+          if (k < face.obstacles(face.points[p].node).size())
             result[p].push_back(of_pressure[p]);
       }
     return result;

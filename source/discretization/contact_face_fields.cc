@@ -32,16 +32,14 @@ namespace Viscoplastic
     std::map<types::boundary_id, BoundaryForces> result;
     for (const auto &[id, part] : area_shares)
       {
-        BoundaryForces &forces = result[id];
-        for (unsigned int p = 0; p < part.size(); ++p)
-          if (part[p] != 0.)
-            (layout().points[p].is_obstacle ? forces.contact :
-                                              forces.friction) +=
-              part[p] * cartesian(p, state.multiplier[p]);
-        forces.friction =
-          Utilities::MPI::sum(forces.friction, space.communicator);
-        forces.contact =
-          Utilities::MPI::sum(forces.contact, space.communicator);
+        const auto sum = [&, &part = part](const bool of_obstacles) {
+          Tensor<1, dim> here;
+          for (const unsigned int p : layout().points_of_kind(of_obstacles))
+            if (part[p] != 0.)
+              here += part[p] * cartesian(p, state.multiplier[p]);
+          return Utilities::MPI::sum(here, space.communicator);
+        };
+        result[id] = {sum(false), sum(true)};
       }
     return result;
   }
@@ -109,9 +107,7 @@ namespace Viscoplastic
         // Points of the same normal at a node share the sum of their areas.
         double      area  = point_weights[p];
         const auto &point = face.points[p];
-        for (unsigned int o = face.first_point[point.node];
-             o < face.first_point[point.node + 1];
-             ++o)
+        for (const unsigned int o : face.node_points(point.node))
           if (const auto &other = face.points[o];
               o != p && other.is_obstacle == point.is_obstacle &&
               other.n_tangents == point.n_tangents &&
@@ -165,8 +161,7 @@ namespace Viscoplastic
       {
         const unsigned int n    = face.points[p].node;
         const Node        &node = nodes[n];
-        if (face.n_node_points(n) > 1 &&
-            !(face.has_plain_friction(n) && face.n_node_points(n) == 2))
+        if (!face.is_plain(n))
           continue;
         Tensor<1, dim> density;
         for (unsigned int d = 0; d < dim; ++d)
@@ -201,16 +196,12 @@ namespace Viscoplastic
     const ContactLayout &face   = layout();
     DistributedVector    values = space.owned_vector(),
                       ghosted   = space.ghosted_vector();
-    for (unsigned int p = 0; p < face.points.size(); ++p)
+    for (const unsigned int p : face.points_of_kind(of_obstacles))
       {
         const unsigned int n = face.points[p].node;
-        if (face.points[p].is_obstacle != of_obstacles)
-          continue;
-        const unsigned int first_obstacle = face.first_obstacle(n);
         values.begin()[space.owned.index_within_set(nodes[n].first_dof)] +=
-          point_values[p] / (of_obstacles ?
-                               face.first_point[n + 1] - first_obstacle :
-                               first_obstacle - face.first_point[n]);
+          point_values[p] /
+          (of_obstacles ? face.obstacles(n) : face.friction_points(n)).size();
       }
     space.distribute_hanging_nodes(values);
     ghosted = values;

@@ -198,17 +198,15 @@ namespace Viscoplastic
       result.foundation_work -=
         0.5 * (old_state.multiplier[p] + state.multiplier[p]) *
         state.foundation_step[p];
-    for (unsigned int p = 0; p < slips.size(); ++p)
+    for (const unsigned int p : face.layout().friction_points())
       {
-        const ContactLayout &layout = face.layout();
-        const unsigned int   node   = layout.points[p].node;
-        const unsigned int   first  = layout.first_obstacle(node),
-                           end      = layout.first_point[node + 1];
-        bool is_open                = first < end;
-        for (unsigned int o = first; o < end; ++o)
+        const auto obstacles =
+          face.layout().obstacles(face.layout().points[p].node);
+        bool is_open = !obstacles.empty();
+        for (const unsigned int o : obstacles)
           is_open &= state.multiplier[o][0] == 0.;
         // Without contact there is neither stick nor slip.
-        if (layout.points[p].is_obstacle || (is_open && state.bound[p] == 0.))
+        if (is_open && state.bound[p] == 0.)
           continue;
         const double size   = stable_norm(slips[p]);
         const double weight = face.weights()[p];
@@ -261,27 +259,24 @@ namespace Viscoplastic
     NormalContact<dim>              result;
     const ContactLayout            &layout  = face.layout();
     const std::vector<Tensor<1, 2>> motions = face.slips(change, {});
-    for (unsigned int p = 0; p < layout.points.size(); ++p)
+    for (const unsigned int p : layout.obstacles())
       {
-        if (!layout.points[p].is_obstacle)
-          continue;
         const double force = state.multiplier[p][0], weight = face.weights()[p];
         result.area += weight;
         if (force > 0.)
           result.contact_area += weight;
-        if (const ContactLayout::Point &point = layout.points[p];
-            point.gives_way())
+        if (const NormalCompliance &compliance = layout.points[p].compliance;
+            !compliance.is_rigid())
           {
             const double w         = state.penetration(p);
             result.max_penetration = std::max(result.max_penetration, w);
             result.foundation_work +=
-              point.compliance.energy(w) -
-              point.compliance.energy(old_state.penetration(p));
+              compliance.energy(w) -
+              compliance.energy(old_state.penetration(p));
           }
         if (weight > 0.)
           result.max_pressure = std::max(result.max_pressure, force / weight);
-        result.max_gap =
-          std::max(result.max_gap, state.bound[p] - state.slip[p][0]);
+        result.max_gap = std::max(result.max_gap, -state.penetration(p));
         result.foundation_work -=
           0.5 * (old_state.multiplier[p][0] + force) * motions[p][0];
       }

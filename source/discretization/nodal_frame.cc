@@ -315,10 +315,10 @@ namespace Viscoplastic
               make_obstacle(frame, normal_of(*condition, varying_normal));
             if (obstacle.map.norm() < parallel_tolerance)
               continue; // other conditions hold it
-            obstacle.gives_way = condition->gives_way();
-            unsigned int o     = 0;
+            obstacle.is_compliant = condition->has_normal_compliance();
+            unsigned int o        = 0;
             while (o < frame.obstacles.size() &&
-                   (obstacle.gives_way != frame.obstacles[o].gives_way ||
+                   (obstacle.is_compliant != frame.obstacles[o].is_compliant ||
                     (frame.obstacles[o].map - obstacle.map).norm() > 1e-10))
               ++o;
             if (o == frame.obstacles.size())

@@ -228,9 +228,8 @@ namespace Viscoplastic
       return {};
     const AdmissibleSpace<dim> &space    = discretization.space;
     ContactState                slipping = state.contact;
-    for (unsigned int p = 0; p < slipping.n_points(); ++p)
-      if (slipping.sticks[p] &&
-          !discretization.face->layout().points[p].is_obstacle)
+    for (const unsigned int p : discretization.face->layout().friction_points())
+      if (slipping.sticks[p])
         slipping.multiplier[p] = Tensor<1, 2>();
     const DistributedVector density  = discretization.face->density(slipping);
     const auto              is_force = [&](const BoundaryCondition<dim> &of) {

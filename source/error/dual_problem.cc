@@ -218,8 +218,8 @@ namespace Viscoplastic
             const ContactState  &contact = state.contact;
             double               work    = 0.;
             const ContactLayout &face    = discretization.face->layout();
-            for (unsigned int p = 0; p < contact.n_points(); ++p)
-              if (!face.points[p].is_obstacle && !contact.sticks[p])
+            for (const unsigned int p : face.friction_points())
+              if (!contact.sticks[p])
                 work += contact.multiplier[p] * contact.slip[p];
             return face.sum(work);
           }
@@ -272,15 +272,12 @@ namespace Viscoplastic
       {
         const ContactLayout &layout = face->layout();
         Vector<double>       force(layout.n_dofs());
-        for (unsigned int p = 0; p < contact.n_points(); ++p)
-          if (!layout.points[p].is_obstacle && !contact.sticks[p])
-            {
-              const ContactLayout::Point &point = layout.points[p];
-              layout.set_node_values(layout.node_values(force, point.node) +
-                                       node_force(point, contact.multiplier[p]),
-                                     point.node,
-                                     force);
-            }
+        for (const unsigned int p : layout.friction_points())
+          if (!contact.sticks[p])
+            layout.add_node_values(node_force(layout.points[p],
+                                              contact.multiplier[p]),
+                                   layout.points[p].node,
+                                   force);
         face->restriction().add(1., force, result);
       }
     return result;
@@ -355,9 +352,8 @@ namespace Viscoplastic
             };
             const unsigned int first          = layout.first_point[n],
                                first_obstacle = layout.first_obstacle(n);
-            for (unsigned int p = first_obstacle; p < layout.first_point[n + 1];
-                 ++p)
-              contact += share(p) * take(layout.points[p].map[0]);
+            for (const unsigned int o : layout.obstacles(n))
+              contact += share(o) * take(layout.points[o].map[0]);
             // At an edge, each of several points acts along its directions.
             for (unsigned int p = first; p + 1 < first_obstacle; ++p)
               for (unsigned int i = 0; i < layout.points[p].n_tangents; ++i)
@@ -384,8 +380,8 @@ namespace Viscoplastic
   {
     const ContactLayout &face = discretization.face->layout();
     Vector<double>       on_face(face.n_dofs());
-    for (unsigned int p = 0; p < contact.n_points(); ++p)
-      if (!face.points[p].is_obstacle && !contact.sticks[p])
+    for (const unsigned int p : face.friction_points())
+      if (!contact.sticks[p])
         {
           const unsigned int node = face.points[p].node;
           unsigned int       o    = face.first_obstacle(node);
@@ -394,8 +390,7 @@ namespace Viscoplastic
             {
               Tensor<1, 2> worth;
               worth[0] = coefficient * path;
-              face.set_node_values(face.node_values(on_face, node) +
-                                     motion_with_slip(face.points[o++], worth),
+              face.add_node_values(motion_with_slip(face.points[o++], worth),
                                    node,
                                    on_face);
             }
@@ -411,16 +406,16 @@ namespace Viscoplastic
   {
     const ContactLayout &face = discretization.face->layout();
     ContactState         held(std::vector<double>(face.points.size(), 0.));
-    for (unsigned int p = 0; p < face.points.size(); ++p)
+    for (unsigned int n = 0; n < face.n_nodes(); ++n)
       {
-        const ContactLayout::Point &point = face.points[p];
-        const unsigned int first_obstacle = face.first_obstacle(point.node);
-        held.multiplier[p] =
-          slip(point, face.node_values(force, point.node)) /
-          (point.is_obstacle ?
-             (face.first_point[point.node + 1] - first_obstacle) *
-               point.map[0].norm_square() :
-             first_obstacle - face.first_point[point.node]);
+        const Tensor<1, 3> here = face.node_values(force, n);
+        for (const unsigned int p : face.friction_points(n))
+          held.multiplier[p] =
+            slip(face.points[p], here) / double(face.friction_points(n).size());
+        for (const unsigned int o : face.obstacles(n))
+          held.multiplier[o] =
+            slip(face.points[o], here) /
+            (face.obstacles(n).size() * face.points[o].map[0].norm_square());
       }
     return discretization.face->density(held);
   }

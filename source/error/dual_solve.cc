@@ -34,10 +34,7 @@ namespace Viscoplastic
     const ContactLayout &face   = discretization.face->layout();
     ContactState         linear = contact;
     for (unsigned int p = 0; p < linear.n_points(); ++p)
-      // A point without friction bound, or without contact pressure, is free.
-      linear.sticks[p] = linear.sticks[p] && (face.points[p].is_obstacle ?
-                                                linear.multiplier[p][0] > 0. :
-                                                linear.bound[p] > 0.);
+      linear.sticks[p] = linear.holds(face.points[p], p);
     std::vector<Tensor<2, 3>> inverse_diagonal;
     for (unsigned int node = 0; node < face.n_nodes(); ++node)
       inverse_diagonal.push_back(
@@ -127,9 +124,9 @@ namespace Viscoplastic
     // Points in contact have no normal error, whatever their state was before.
     const ContactLayout &layout   = face->layout();
     ContactState         touching = contact;
-    for (unsigned int p = 0; p < touching.n_points(); ++p)
-      touching.sticks[p] =
-        layout.points[p].is_obstacle && contact.multiplier[p][0] > 0.;
+    touching.sticks.assign(touching.n_points(), false);
+    for (const unsigned int o : layout.obstacles())
+      touching.sticks[o] = contact.multiplier[o][0] > 0.;
     Vector<double> on_face = face->restriction().gather(u);
     make_truncation(layout, touching, {}).project(layout, on_face);
     face->restriction().set(on_face, u);

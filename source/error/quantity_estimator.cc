@@ -242,8 +242,13 @@ namespace Viscoplastic
         // the error of z as relaxed since, and the former sets.
         bool rests = false;
         if (discretization.slipping_face())
-          for (unsigned int p = 0; p < state.contact.n_points(); ++p)
-            rests |= holds(state.contact, p) && !holds(old.contact, p);
+          for (const unsigned int p :
+               discretization.face->layout().friction_points())
+            {
+              const auto &point = discretization.face->layout().points[p];
+              rests |=
+                state.contact.holds(point, p) && !old.contact.holds(point, p);
+            }
         if (discretization.slipping_face() &&
             discretization.face->layout().any(rests))
           solve(old.contact, old.carried_error);

@@ -17,10 +17,8 @@ namespace Viscoplastic
     // Bounds of points that have slipped, their decrease for points that
     // continue to slip, and the quadrature error.
     std::vector<double> sums(3, 0.);
-    for (unsigned int p = 0; p < contact.n_points(); ++p)
+    for (const unsigned int p : discretization.face->layout().friction_points())
       {
-        if (discretization.face->layout().points[p].is_obstacle)
-          continue;
         if (!old.sticks[p])
           {
             sums[0] += old.bound[p];
@@ -50,17 +48,6 @@ namespace Viscoplastic
 
 
   template <int dim>
-  bool
-  QuantityEstimator<dim>::holds(const ContactState &contact,
-                                const unsigned int  p) const
-  {
-    return !discretization.face->layout().points[p].is_obstacle &&
-           contact.sticks[p] && contact.bound[p] > 0.;
-  }
-
-
-
-  template <int dim>
   void
   QuantityEstimator<dim>::hold(BulkSolver                &solver,
                                const EvaluatedState<dim> &accepted,
@@ -74,13 +61,14 @@ namespace Viscoplastic
     ContactState            held     = old;
     bool                    has_rest = false;
     double sums[2] = {0., 0.}; // bounds of what has stuck, and still does
-    for (unsigned int p = 0; p < contact.n_points(); ++p)
-      if (holds(old, p))
+    const ContactLayout &face = discretization.face->layout();
+    for (const unsigned int p : face.friction_points())
+      if (old.holds(face.points[p], p))
         {
           sums[0] += old.bound[p];
-          sums[1] += holds(contact, p) ? old.bound[p] : 0.;
+          sums[1] += contact.holds(face.points[p], p) ? old.bound[p] : 0.;
         }
-      else if (holds(contact, p))
+      else if (contact.holds(face.points[p], p))
         {
           has_rest = held.sticks[p] = true;
           held.bound[p]             = contact.bound[p];
@@ -91,8 +79,7 @@ namespace Viscoplastic
     const double share = sums[0] > 0. ? sums[1] / sums[0] : 0.;
     double       space = 0.; // of what comes to rest
     // A run begins with exact positions of points by definition.
-    const bool settles =
-      accepted.state.k > 0. && discretization.face->layout().any(has_rest);
+    const bool settles = accepted.state.k > 0. && face.any(has_rest);
     if (settles)
       for (const bool is_held : {false, true})
         {
@@ -152,7 +139,6 @@ namespace Viscoplastic
 
 
   VISCOPLASTIC_INSTANTIATE_MEMBER(QuantityEstimator, settle);
-  VISCOPLASTIC_INSTANTIATE_MEMBER(QuantityEstimator, holds);
   VISCOPLASTIC_INSTANTIATE_MEMBER(QuantityEstimator, hold);
   VISCOPLASTIC_INSTANTIATE_MEMBER(QuantityEstimator, add_slip_defects);
 } // namespace Viscoplastic

@@ -158,7 +158,7 @@ namespace Viscoplastic
                                       const double        w,
                                       const double        p) const
   {
-    if (!face.condition->gives_way())
+    if (!face.condition->has_normal_compliance())
       return w > 0. ? k * w : std::min(-k * w, p);
     NormalCompliance foundation;
     foundation.add(face.compliances[q], face.condition->pressure_law);

@@ -214,7 +214,7 @@ namespace Viscoplastic
           face.bounds[q] = condition.bound(x, 0.);
         if (condition.is_unilateral() && !condition.bound_depends_on_time())
           face.gaps[q] = condition.gap(x, 0.);
-        if (condition.gives_way())
+        if (condition.has_normal_compliance())
           face.compliances[q] = condition.compliance(x);
         if (condition.has_springs())
           {

@@ -360,22 +360,19 @@ namespace Viscoplastic
         discretization.space.to_frames(state.u, velocity);
         const std::vector<Tensor<1, 2>> carried_over = contact.multiplier;
         face.set_obstacles(state.t, velocity, contact);
-        for (unsigned int p = 0; p < contact.n_points(); ++p)
-          if (const ContactLayout::Point &point = layout.points[p];
-              point.is_obstacle)
+        for (const unsigned int o : layout.rigid(layout.obstacles()))
+          contact.multiplier[o][0] = std::max(0., carried_over[o][0]);
+        for (const unsigned int o : layout.compliant(layout.obstacles()))
+          // The transferred pressure is more accurate than a penetration
+          // interpolated to a new node; corners have only the latter.
+          if (const ContactLayout::Point &point = layout.points[o];
+              layout.obstacles(point.node).size() == 1)
             {
-              const double force = std::max(0., carried_over[p][0]);
-              // The transferred pressure is more accurate than a penetration
-              // interpolated to a new node; corners have only the latter.
-              if (point.gives_way() && layout.first_point[point.node + 1] -
-                                           layout.first_obstacle(point.node) >
-                                         1)
-                continue;
-              contact.multiplier[p][0] = force;
-              if (point.gives_way())
-                contact.bound[p] = force > 0. ?
-                                     -point.compliance.penetration(force) :
-                                     std::max(0., contact.bound[p]);
+              const double force       = std::max(0., carried_over[o][0]);
+              contact.multiplier[o][0] = force;
+              contact.bound[o]         = force > 0. ?
+                                           -point.compliance.penetration(force) :
+                                           std::max(0., contact.gap(o));
             }
         face.add_computed_bounds(state.t, contact, contact.bound, rates);
       }
@@ -385,16 +382,13 @@ namespace Viscoplastic
     for (unsigned int p = 0; p < carried.size(); ++p)
       slip_rates[p] -= carried[p] / state.k;
     const double max_speed = velocity.linfty_norm();
-    for (unsigned int p = 0; p < contact.n_points(); ++p)
+    for (const unsigned int o : layout.obstacles())
+      contact.sticks[o] = stable_norm(contact.multiplier[o]) > 0.;
+    for (const unsigned int p : layout.friction_points())
       {
         const double bound      = contact.bound[p];
         auto        &multiplier = contact.multiplier[p];
         const double size       = stable_norm(multiplier);
-        if (layout.points[p].is_obstacle)
-          {
-            contact.sticks[p] = size > 0.;
-            continue;
-          }
         if (size > bound)
           multiplier *= bound / size;
         // Bounds that depend on slip rates are not those of the last step, so

@@ -185,17 +185,15 @@ namespace Viscoplastic
           }
         if (bounds_vary)
           {
-            const std::vector<double> now = bounds_at(time);
-            for (unsigned int p = 0; p < now.size(); ++p)
-              {
-                const double of_point =
-                  beyond(&now[p], &bounds_before[p], &bounds_after[p], 1);
-                // The bound of an obstacle is its gap.
-                if (d.face->layout().points[p].is_obstacle)
-                  motion = std::max(motion, of_point);
-                else
-                  sums[2] += of_point * of_point;
-              }
+            const std::vector<double> now      = bounds_at(time);
+            const auto                of_point = [&](const unsigned int p) {
+              return beyond(&now[p], &bounds_before[p], &bounds_after[p], 1);
+            };
+            for (const unsigned int p : d.face->layout().friction_points())
+              sums[2] += Utilities::fixed_power<2>(of_point(p));
+            // The bound of an obstacle is its gap.
+            for (const unsigned int o : d.face->layout().obstacles())
+              motion = std::max(motion, of_point(o));
           }
         if (moves)
           {

@@ -59,27 +59,25 @@ namespace Viscoplastic
       return Utilities::MPI::logical_or(here,
                                         discretization.space.communicator);
     };
+    const ContactLayout &layout = discretization.face->layout();
     if (!has_bound)
       {
-        const auto          &bounds = step.end.state.contact.bound;
-        const ContactLayout &face   = discretization.face->layout();
-        bool                 here   = false;
-        for (unsigned int p = 0; p < bounds.size(); ++p)
-          here |= !face.points[p].is_obstacle && bounds[p] > 0.;
+        bool here = false;
+        for (const unsigned int p : layout.friction_points())
+          here |= step.end.state.contact.bound[p] > 0.;
         has_bound = is_so(here);
       }
     if (discretization.face->has_obstacles() && step.time_step.n > 0)
       {
         const ContactState &state   = step.end.state.contact;
         bool                touches = false, is_open = false;
-        for (unsigned int p = 0; p < state.n_points(); ++p)
-          if (const auto &point = discretization.face->layout().points[p];
-              point.is_obstacle)
-            // Any pressure counts, however small beside those in the body.
-            (state.multiplier[p][0] > 0. ||
-                 (point.gives_way() && state.penetration(p) > 0.) ?
-               touches :
-               is_open) = true;
+        for (const unsigned int o : layout.obstacles())
+          // Any pressure counts, however small beside those in the body.
+          (state.multiplier[o][0] > 0. ||
+               (!layout.points[o].compliance.is_rigid() &&
+                state.penetration(o) > 0.) ?
+             touches :
+             is_open) = true;
         // A body held by contact alone needs it even without any pressure.
         has_touched = has_touched ||
                       discretization.space.is_held_by_contact() ||
@@ -154,14 +152,14 @@ namespace Viscoplastic
         result.push_back(text);
       }
     bool has_given_bound = false, has_computed_pressure = false,
-         gives_way = false;
+         has_normal_compliance = false;
     for (const auto &pair : scene.boundary)
       {
         has_given_bound |= pair.second.is_unilateral() &&
                            pair.second.has_friction() &&
                            !pair.second.has_computed_pressure();
         has_computed_pressure |= pair.second.has_computed_pressure();
-        gives_way |= pair.second.gives_way();
+        has_normal_compliance |= pair.second.has_normal_compliance();
       }
     if (scene.has_unilateral_contact() && !has_touched && closes_between_nodes)
       result.push_back("unilateral contact has never acted: the gap has closed "
@@ -174,7 +172,7 @@ namespace Viscoplastic
         (is_rough ? on_this_mesh :
                     "and 'Role' = free gives the same for less."));
     else if (scene.has_unilateral_contact() && has_touched && !has_opened &&
-             !has_computed_pressure && !gives_way)
+             !has_computed_pressure && !has_normal_compliance)
       result.push_back("unilateral contact has never opened: everything has "
                        "touched the foundation at all times, and 'Contact law' "
                        "= bilateral with the gap as 'Foundation displacement' "

@@ -109,7 +109,7 @@ namespace Viscoplastic
                   row.printed);
           row.add("max_pressure", contact.max_pressure, Quantity::stress);
           row.add("max_gap", contact.max_gap, Quantity::length);
-          if (face.gives_way())
+          if (face.has_normal_compliance())
             row.add("max_penetration",
                     contact.max_penetration,
                     Quantity::length);

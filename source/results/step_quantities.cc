@@ -102,12 +102,12 @@ namespace Viscoplastic
     double
     energy_of_foundation(const Discretization<dim> &d, const State<dim> &state)
     {
-      if (!d.face || !d.face->gives_way())
+      if (!d.face || !d.face->has_normal_compliance())
         return 0.;
       const ContactLayout &face = d.face->layout();
       double               sum  = 0.;
-      for (unsigned int p = 0; p < state.contact.n_points(); ++p)
-        sum += face.points[p].compliance.energy(state.contact.penetration(p));
+      for (const unsigned int o : face.obstacles())
+        sum += face.points[o].compliance.energy(state.contact.penetration(o));
       return face.sum(sum);
     }
 

@@ -171,10 +171,11 @@ namespace Viscoplastic
       const Vector<double> x =
         discretization.face->restriction().gather(motion);
       double nearest = -std::numeric_limits<double>::infinity();
-      for (const ContactLayout::Point &point : layout.points)
-        if (point.is_obstacle)
-          nearest = std::max(nearest,
-                             slip(point, layout.node_values(x, point.node))[0]);
+      for (const unsigned int o : layout.obstacles())
+        nearest =
+          std::max(nearest,
+                   slip(layout.points[o],
+                        layout.node_values(x, layout.points[o].node))[0]);
       return Utilities::MPI::max(nearest, space.communicator) <
              -1e-6 * motion.linfty_norm();
     }

@@ -167,11 +167,11 @@ namespace Viscoplastic
           for (const unsigned int v : cell->vertex_indices())
             new_nodes.insert(cell->vertex_dof_index(v, 0));
       const ContactLayout &layout = discretization.face->layout();
-      for (unsigned int p = 0; p < contact.n_points(); ++p)
-        if (const auto &point = layout.points[p];
-            point.is_obstacle && contact.bound[p] <= 0. &&
-            new_nodes.count(discretization.face->first_dof(point.node)) == 1)
-          contact.sticks[p] = true;
+      for (const unsigned int o : layout.obstacles())
+        if (contact.gap(o) <= 0. &&
+            new_nodes.count(
+              discretization.face->first_dof(layout.points[o].node)) == 1)
+          contact.sticks[o] = true;
     }
   } // namespace
 

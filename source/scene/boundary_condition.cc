@@ -370,7 +370,7 @@ namespace Viscoplastic
           read.refuse_time(k, one.name, "a foundation does", "gap");
           given_compliance = std::move(k);
         }
-    if (gives_way())
+    if (has_normal_compliance())
       pressure_law = contact_law->make(numbers);
     if (is_given(parameters.foundation_normal))
       {

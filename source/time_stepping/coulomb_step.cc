@@ -136,18 +136,17 @@ namespace Viscoplastic
                                  problem.slip_rates);
         std::vector<double> missing(bounds.size(), 0.);
         double              change = 0., sum = 0.;
-        for (unsigned int p = 0; p < bounds.size(); ++p)
-          if (!face.layout().points[p].is_obstacle)
-            {
-              missing[p] = bounds[p] - contact.bound[p];
-              change += std::abs(missing[p]);
-              // Each of the bounds may be zero: take the largest one.
-              double largest = bounds[p];
-              for (const double bound : {contact.bound[p], problem.bounds[p]})
-                if (std::isfinite(bound))
-                  largest = std::max(largest, bound);
-              sum += largest;
-            }
+        for (const unsigned int p : face.layout().friction_points())
+          {
+            missing[p] = bounds[p] - contact.bound[p];
+            change += std::abs(missing[p]);
+            // Each of the bounds may be zero: take the largest one.
+            double largest = bounds[p];
+            for (const double bound : {contact.bound[p], problem.bounds[p]})
+              if (std::isfinite(bound))
+                largest = std::max(largest, bound);
+            sum += largest;
+          }
         change = face.layout().sum(change);
         sum    = face.layout().sum(sum);
         // Ratios of changes that are errors of the solves mean nothing.
@@ -261,9 +260,8 @@ namespace Viscoplastic
       {
         DistributedVector other_u(first_u);
         ContactState      other(first);
-        for (unsigned int p = 0; p < other.n_points(); ++p)
-          if (face.layout().has_plain_friction(face.layout().points[p].node) &&
-              !face.layout().points[p].is_obstacle)
+        for (const unsigned int p : face.layout().friction_points())
+          if (face.layout().has_plain_friction(face.layout().points[p].node))
             other.bound[p] = bound;
         try
           {

@@ -409,22 +409,26 @@ namespace Viscoplastic
       }
     const auto derivative = [&](const double              s,
                                 const IrreversibleStress &z_there) {
-      double friction = 0.;
-      for (unsigned int p = 0; p < slips.size(); ++p)
+      double     contact = 0.;
+      const auto at      = [&](const unsigned int p) {
+        return slips[p] + s * slip_changes[p];
+      };
+      for (unsigned int n = 0; d.face && n < d.face->layout().n_nodes(); ++n)
         {
-          const ContactLayout::Point &point = d.face->layout().points[p];
-          const Tensor<1, 2>          slip  = slips[p] + s * slip_changes[p];
-          const double norm = slip.norm(), rest = slip_changes[p].norm();
-          if (point.gives_way())
-            friction +=
-              point.compliance.force(slip[0] - bounds[p]) * slip_changes[p][0];
-          else if (rest > 0. && std::isfinite(bounds[p]) && !point.is_obstacle)
-            friction += bounds[p] * (norm > 1e-14 * rest ?
-                                       (slip * slip_changes[p]) / norm :
-                                       (s < 0.5 ? rest : -rest));
+          const ContactLayout &layout = d.face->layout();
+          for (const unsigned int p : layout.friction_points(n))
+            if (const double rest = slip_changes[p].norm();
+                rest > 0. && std::isfinite(bounds[p]))
+              contact +=
+                bounds[p] * (at(p).norm() > 1e-14 * rest ?
+                               (at(p) * slip_changes[p]) / at(p).norm() :
+                               (s < 0.5 ? rest : -rest));
+          for (const unsigned int o : layout.compliant(layout.obstacles(n)))
+            contact += layout.points[o].compliance.force(at(o)[0] - bounds[o]) *
+                       slip_changes[o][0];
         }
       return slope + s * curvature +
-             Utilities::MPI::sum(friction, d.space.communicator) +
+             Utilities::MPI::sum(contact, d.space.communicator) +
              virtual_work(d.stress_space, z_there, ghosted_change);
     };
 

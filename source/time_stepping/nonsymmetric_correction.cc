@@ -219,53 +219,56 @@ namespace Viscoplastic
         change -= problem.old_u();
         const Vector<double> x = face->restriction().gather(change);
         Vector<double>       stop(x.size());
-        for (unsigned int p = 0; p < layout.points.size(); ++p)
+        for (const unsigned int p : layout.friction_points())
           {
             const ContactLayout::Point &point = layout.points[p];
             Tensor<1, 2>               &s     = to.contact.slip[p];
             const Tensor<1, 3> values = layout.node_values(x, point.node);
-            if (to.contact.sticks[p] || point.gives_way())
+            if (to.contact.sticks[p])
               continue;
             const Tensor<1, 2> before = s;
             s                         = to.contact.slip_with(point, p, values);
-            const auto stop_by        = [&](const Tensor<1, 3> &change) {
-              layout.set_node_values(layout.node_values(stop, point.node) +
-                                       change,
-                                     point.node,
-                                     stop);
-            };
-            if (point.is_obstacle)
-              {
-                const double beyond = s[0] - to.contact.bound[p];
-                if (beyond <= 0.)
-                  continue;
-                stop_by(-beyond / point.map[0].norm_square() * point.map[0]);
-                s[0]                 = to.contact.bound[p];
-                to.contact.sticks[p] = true;
-                continue;
-              }
             if (to.contact.bound[p] == 0.)
               continue;
             if (before * s <= 0. && layout.has_plain_friction(point.node))
               {
-                stop_by(
-                  layout.n_node_points(point.node) == 1 ?
+                layout.add_node_values(
+                  layout.node_points(point.node).size() == 1 ?
                     motion_with_slip(point, to.contact.foundation_step[p]) -
                       values :
-                    -1. * motion_with_slip(point, s));
+                    -1. * motion_with_slip(point, s),
+                  point.node,
+                  stop);
                 s = Tensor<1, 2>();
               }
             to.contact.sticks[p] = s.norm() == 0.;
           }
-        for (unsigned int p = 0; p < layout.points.size(); ++p)
-          if (const ContactLayout::Point &point = layout.points[p];
-              point.gives_way())
+        for (const unsigned int o : layout.rigid(layout.obstacles()))
+          if (!to.contact.sticks[o])
             {
-              to.contact.slip[p]   = slip(point,
-                                        layout.node_values(x, point.node) +
-                                          layout.node_values(stop, point.node));
-              to.contact.sticks[p] = to.contact.penetration(p) > 0.;
+              const ContactLayout::Point &point = layout.points[o];
+              Tensor<1, 2>               &s     = to.contact.slip[o];
+              s                                 = to.contact.slip_with(point,
+                                       o,
+                                       layout.node_values(x, point.node));
+              const double beyond               = to.contact.penetration(o);
+              if (beyond <= 0.)
+                continue;
+              layout.add_node_values(-beyond / point.map[0].norm_square() *
+                                       point.map[0],
+                                     point.node,
+                                     stop);
+              s[0]                 = to.contact.gap(o);
+              to.contact.sticks[o] = true;
             }
+        for (const unsigned int o : layout.compliant(layout.obstacles()))
+          {
+            const ContactLayout::Point &point = layout.points[o];
+            to.contact.set_slip(point,
+                                o,
+                                layout.node_values(x, point.node) +
+                                  layout.node_values(stop, point.node));
+          }
         face->restriction().add(1., stop, to.u);
       }
     space.to_cartesian(to.u, to.ghosted_u);

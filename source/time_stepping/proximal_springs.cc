@@ -64,7 +64,7 @@ namespace Viscoplastic
               for (const Vector<double> &motion : left)
                 square += motion[k] * motion[k];
               // Avoid nodes where pieces push against each other.
-              if (face.n_node_points(node) > 1 &&
+              if (face.node_points(node).size() > 1 &&
                   !face.has_plain_friction(node))
                 square *= 0.1;
               // Of equal components take the first.
@@ -250,9 +250,8 @@ namespace Viscoplastic
                              state,
                              result,
                              problem.slip_rates);
-    for (unsigned int p = 0; p < bounds.size(); ++p)
-      if (!face.layout().points[p].is_obstacle)
-        result[p] = std::max(result[p], bounds[p]);
+    for (const unsigned int p : face.layout().friction_points())
+      result[p] = std::max(result[p], bounds[p]);
     return result;
   }
 
@@ -269,11 +268,10 @@ namespace Viscoplastic
     bool                 moves  = false;
     for (const double work : body.load)
       moves |= std::abs(work) > 1e-10 * body.load_size;
-    for (unsigned int p = 0; p < problem.bounds.size(); ++p)
-      {
-        pushes += problem.old.state.contact.multiplier[p].norm();
-        moves |= face.points[p].is_obstacle && problem.bounds[p] < 0.;
-      }
+    for (const unsigned int o : face.obstacles())
+      moves |= problem.bounds[o] < 0.;
+    for (const Tensor<1, 2> &multiplier : problem.old.state.contact.multiplier)
+      pushes += multiplier.norm();
     return !face.any(moves) && face.sum(pushes) <= 1e-8 * right_side.l1_norm();
   }
 
@@ -464,7 +462,7 @@ namespace Viscoplastic
         // Move a body on soft ground to where its loads balance as a whole,
         // which the springs would delay. Not with learned steps: these place
         // the springs well, but exaggerate the strains.
-        if (discretization.face->gives_way() && !learns)
+        if (discretization.face->has_normal_compliance() && !learns)
           settle_whole(problem, body, contact, old_u, center, u);
       }
     AssertThrow(false, ExcMessage(restlessness(change, left_by_rounding)));

@@ -53,15 +53,9 @@ namespace Viscoplastic
             sums[1] += (u[i] - old_u[i]) * (z[i] - old_z[i]);
         }
       for (unsigned int p = 0; p < state.contact.n_points(); ++p)
-        {
-          const auto holds = [&](const ContactState &contact) {
-            return contact.sticks[p] &&
-                   (discretization.face->layout().points[p].is_obstacle ?
-                      contact.multiplier[p][0] :
-                      contact.bound[p]) > 0.;
-          };
-          sums[2] += holds(old.contact) != holds(state.contact) ? 1. : 0.;
-        }
+        if (const auto &point = discretization.face->layout().points[p];
+            old.contact.holds(point, p) != state.contact.holds(point, p))
+          ++sums[2];
       sums[3] = state.contact.n_points();
       Utilities::MPI::sum(sums, discretization.space.communicator, sums);
       // |sigma|^2 = a(u, u) + 2 (z, eps(u)) + |z|^2, of change and end.
@@ -93,8 +87,8 @@ namespace Viscoplastic
                            const ContactState  &after)
     {
       double work = 0.;
-      for (unsigned int p = 0; p < after.n_points(); ++p)
-        if (!face.points[p].is_obstacle && !after.sticks[p])
+      for (const unsigned int p : face.friction_points())
+        if (!after.sticks[p])
           work +=
             0.5 * (after.bound[p] - before.bound[p]) * after.slip[p].norm();
       return std::abs(face.sum(work));

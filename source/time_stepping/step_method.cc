@@ -17,9 +17,8 @@ namespace Viscoplastic
       if (old.n_points() != bounds.size() ||
           (face.has_obstacles() && face.bounds_depend_on_time()))
         return false;
-      for (unsigned int p = 0; p < bounds.size(); ++p)
+      for (const unsigned int p : face.layout().friction_points())
         if (!(bounds[p] >= old.bound[p] ||
-              face.layout().points[p].is_obstacle ||
               old.multiplier[p].norm() <= bounds[p]))
           return false;
       return true;
@@ -50,12 +49,10 @@ namespace Viscoplastic
                                   contact.bound,
                                   problem.slip_rates);
       }
-    for (unsigned int p = 0; p < contact.n_points(); ++p)
-      {
-        contact.slip[p] = Tensor<1, 2>();
-        if (!face->layout().points[p].is_obstacle)
-          contact.sticks[p] = contact.bound[p] > 0.;
-      }
+    contact.slip.assign(contact.n_points(), Tensor<1, 2>());
+    if (face != nullptr)
+      for (const unsigned int p : face->layout().friction_points())
+        contact.sticks[p] = contact.bound[p] > 0.;
     // The bound on the error is that of the old solve.
     report            = problem.old.report;
     report.iterations = report.linear_iterations = report.bound_iterations = 0;

@@ -89,9 +89,9 @@ namespace Viscoplastic
         const auto &positions = d.face->restriction().positions();
         for (unsigned int node = 0; node < face.n_nodes(); ++node)
           {
-            const unsigned int begin    = face.first_dof[node],
-                               p        = face.first_point[node],
-                               obstacle = face.first_obstacle(node);
+            const unsigned int begin = face.first_dof[node],
+                               p     = face.first_point[node];
+            const auto obstacles     = face.obstacles(node);
             // The increment of the node.
             Tensor<1, 3> x;
             for (unsigned int i = 0; i < face.n_node_dofs(node); ++i)
@@ -99,25 +99,22 @@ namespace Viscoplastic
                 const unsigned int dof = positions[begin + i];
                 x[i]                   = u.begin()[dof] - old_u.begin()[dof];
               }
-            const bool sticks =
-              p < obstacle && contact.sticks[p] && contact.bound[p] > 0.;
-            if (sticks && obstacle == face.first_point[node + 1])
+            const bool sticks = !face.friction_points(node).empty() &&
+                                contact.holds(face.points[p], p);
+            if (sticks && obstacles.empty())
               x = motion_with_slip(face.points[p], contact.foundation_step[p]);
             else if (sticks && face.has_plain_friction(node))
               x -= motion_with_slip(face.points[p],
                                     contact.slip_with(face.points[p], p, x));
-            for (unsigned int o = obstacle; o < face.first_point[node + 1]; ++o)
+            for (const unsigned int o : face.rigid(obstacles))
               {
                 const Tensor<1, 3> &normal = face.points[o].map[0];
-                if (face.points[o].gives_way())
-                  continue;
-                contact.sticks[o] =
-                  contact.sticks[o] && contact.multiplier[o][0] > 0.;
-                const double left = contact.bound[o] - normal * x;
+                contact.sticks[o]          = contact.holds(face.points[o], o);
+                const double left          = contact.gap(o) - normal * x;
                 if (contact.sticks[o] || left < 0.)
                   x += left / normal.norm_square() * normal;
               }
-            if (sticks || obstacle < face.first_point[node + 1])
+            if (sticks || !obstacles.empty())
               for (unsigned int i = 0; i < face.n_node_dofs(node); ++i)
                 {
                   const unsigned int dof = positions[begin + i];
@@ -321,18 +318,13 @@ namespace Viscoplastic
       }
     const ContactLayout &face = d.face->layout();
     Vector<double>       force(face.n_dofs());
-    for (unsigned int p = 0; p < contact.n_points(); ++p)
-      {
-        const ContactLayout::Point &point = face.points[p];
-        // A point without friction is not held.
-        if (!point.is_obstacle)
-          contact.sticks[p] = contact.bound[p] > 0.;
-        if (point.gives_way())
-          face.set_node_values(face.node_values(force, point.node) +
-                                 node_force(point, contact.multiplier[p]),
-                               point.node,
-                               force);
-      }
+    // A point without friction is not held.
+    for (const unsigned int p : face.friction_points())
+      contact.sticks[p] = contact.bound[p] > 0.;
+    for (const unsigned int o : face.compliant(face.obstacles()))
+      face.add_node_values(node_force(face.points[o], contact.multiplier[o]),
+                           face.points[o].node,
+                           force);
     DistributedVector right(right_side);
     if (springs)
       // The springs carry nothing at the present place of the body.

@@ -47,8 +47,8 @@ namespace Viscoplastic
       const ContactFace<dim> &face    = *discretization.face;
       const ContactState     &contact = state.contact;
       std::vector<double>     work(contact.n_points());
-      for (unsigned int p = 0; p < work.size(); ++p)
-        if (face.weights()[p] > 0. && !face.layout().points[p].is_obstacle)
+      for (const unsigned int p : face.layout().friction_points())
+        if (face.weights()[p] > 0.)
           work[p] = contact.multiplier[p] * contact.slip[p] / face.weights()[p];
       state.friction_work = face.nodal_field(work);
       if (old.friction_work.size() > 0)

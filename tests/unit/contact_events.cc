@@ -64,7 +64,7 @@ namespace
       has_contact_event(face, points(">.."), points(">>.", bounds), false));
     EXPECT_TRUE(has_contact_event(
       face, points(".>>"), points("..>", {1., 1., 0.}), false));
-    EXPECT_FALSE(has_contact_event(face, points(""), points(""), false));
+    EXPECT_FALSE(has_contact_event({}, points(""), points(""), false));
   }
 
 

@@ -8,7 +8,11 @@
 
 #include <viscoplastic_contact/contact/normal_compliance.h>
 
+#include <boost/range/adaptor/filtered.hpp>
+#include <boost/range/irange.hpp>
+
 #include <array>
+#include <limits>
 #include <utility>
 #include <vector>
 
@@ -39,20 +43,9 @@ namespace Viscoplastic
       /// Whether the point is an obstacle (the unilateral condition u_n <= g)
       /// instead of a point of friction.
       bool is_obstacle = false;
-      /// The normal compliance of an obstacle; rigid if it has no pieces.
+      /// The normal compliance of an obstacle. Rigid obstacles and points of
+      /// friction have none: its force, slope and energy are zero.
       NormalCompliance compliance;
-
-      bool
-      gives_way() const
-      {
-        return is_obstacle && !compliance.is_rigid();
-      }
-
-      bool
-      is_rigid_obstacle() const
-      {
-        return is_obstacle && compliance.is_rigid();
-      }
     };
 
     /// Position of each node's first component in face vectors, and their size.
@@ -83,12 +76,6 @@ namespace Viscoplastic
       return first_dof[node + 1] - first_dof[node];
     }
 
-    unsigned int
-    n_node_points(const unsigned int node) const
-    {
-      return first_point[node + 1] - first_point[node];
-    }
-
     /// The first obstacle of a node, or the end of its points.
     unsigned int
     first_obstacle(const unsigned int node) const
@@ -97,6 +84,78 @@ namespace Viscoplastic
       while (p < first_point[node + 1] && !points[p].is_obstacle)
         ++p;
       return p;
+    }
+
+    /// Indices of points, to loop over: of all at a node, of its points of
+    /// friction, and of its obstacles.
+    using Range = boost::integer_range<unsigned int>;
+
+    Range
+    node_points(const unsigned int node) const
+    {
+      return {first_point[node], first_point[node + 1]};
+    }
+
+    Range
+    friction_points(const unsigned int node) const
+    {
+      return {first_point[node], first_obstacle(node)};
+    }
+
+    Range
+    obstacles(const unsigned int node) const
+    {
+      return {first_obstacle(node), first_point[node + 1]};
+    }
+
+    /// The points of friction at all nodes, or the obstacles.
+    auto
+    points_of_kind(const bool of_obstacles) const
+    {
+      return boost::adaptors::filter(
+        Range(0, points.size()), [this, of_obstacles](const unsigned int p) {
+          return points[p].is_obstacle == of_obstacles;
+        });
+    }
+
+    auto
+    friction_points() const
+    {
+      return points_of_kind(false);
+    }
+
+    auto
+    obstacles() const
+    {
+      return points_of_kind(true);
+    }
+
+    /// Of obstacles, those that are compliant, or those that are rigid.
+    template <typename Obstacles>
+    auto
+    compliant(const Obstacles &some) const
+    {
+      return boost::adaptors::filter(some, [this](const unsigned int o) {
+        return !points[o].compliance.is_rigid();
+      });
+    }
+
+    template <typename Obstacles>
+    auto
+    rigid(const Obstacles &some) const
+    {
+      return boost::adaptors::filter(some, [this](const unsigned int o) {
+        return points[o].compliance.is_rigid();
+      });
+    }
+
+    /// Whether a node has a single point, or one of friction and an obstacle
+    /// across it: false where pieces meet.
+    bool
+    is_plain(const unsigned int node) const
+    {
+      const std::size_t n = node_points(node).size();
+      return n == 1 || (n == 2 && has_plain_friction(node));
     }
 
     /// Whether a node has exactly one friction point, and its slip is
@@ -122,6 +181,15 @@ namespace Viscoplastic
     {
       for (unsigned int i = 0; i < n_node_dofs(node); ++i)
         x[first_dof[node] + i] = values[i];
+    }
+
+    void
+    add_node_values(const Tensor<1, 3> &values,
+                    const unsigned int  node,
+                    Vector<double>     &x) const
+    {
+      for (unsigned int i = 0; i < n_node_dofs(node); ++i)
+        x[first_dof[node] + i] += values[i];
     }
 
     /// y := y + factor x for face vectors. (Operations of dealii::Vector refuse
@@ -198,8 +266,8 @@ namespace Viscoplastic
   /// with normal compliance p, lambda_c = p(s_c - d_c).
   struct ContactState
   {
-    /// The friction bound rho_c >= 0 (a force), infinite for glued points; of
-    /// an obstacle the gap d_c at the beginning of the step (a length).
+    /// The friction bound rho_c >= 0 (a force), infinite for glued points; at
+    /// obstacles the gap: see gap().
     std::vector<double> bound;
     /// The increment w_c of the displacement of the foundation in the step,
     /// along the slip directions of the point; zero for obstacles.
@@ -237,12 +305,21 @@ namespace Viscoplastic
       return Viscoplastic::slip(point, change) - foundation_step[p];
     }
 
+    /// The gap d_c of an obstacle at the beginning of the step, a length.
+    double
+    gap(const unsigned int o) const
+    {
+      return bound[o];
+    }
+
     /// The penetration s_c - d_c of an obstacle, a length.
     double
-    penetration(const unsigned int p) const
+    penetration(const unsigned int o) const
     {
-      return slip[p][0] - bound[p];
+      return slip[o][0] - gap(o);
     }
+
+    // What differs between points of friction, rigid and compliant obstacles:
 
     /// Whether a point slips against friction that is not zero.
     bool
@@ -256,8 +333,44 @@ namespace Viscoplastic
     bool
     blocks(const ContactLayout::Point &point, const unsigned int p) const
     {
-      return sticks[p] && !point.gives_way();
+      return sticks[p] && point.compliance.is_rigid();
     }
+
+    /// Whether a point sticks with a friction bound, or touches with pressure.
+    bool
+    holds(const ContactLayout::Point &point, const unsigned int p) const
+    {
+      return sticks[p] &&
+             (point.is_obstacle ? multiplier[p][0] : bound[p]) > 0.;
+    }
+
+    /// How far a point that does not constrain its node lets it move along map
+    /// until it does: the open gap of a rigid obstacle, otherwise infinity.
+    double
+    room(const ContactLayout::Point &point, const unsigned int p) const
+    {
+      return point.is_obstacle && point.compliance.is_rigid() && !sticks[p] ?
+               std::max(0., -penetration(p)) :
+               std::numeric_limits<double>::infinity();
+    }
+
+    /// The values of map x at which a point that constrains its node holds it.
+    Tensor<1, 2>
+    place(const ContactLayout::Point &point, const unsigned int p) const
+    {
+      Tensor<1, 2> result = foundation_step[p];
+      if (point.is_obstacle)
+        result[0] = gap(p);
+      return result;
+    }
+
+    /// Set the slip that follows from the motion @p x of the node in the step.
+    /// Where friction sticks it is zero, and what does not slip sticks; a
+    /// compliant obstacle is touched where the node penetrates it.
+    void
+    set_slip(const ContactLayout::Point &point,
+             const unsigned int          p,
+             const Tensor<1, 3>         &x);
 
     /// The multiplier of a point that does not constrain its node, from its
     /// slip: rho_c s_c/|s_c| or p(s_c - d_c); zero without contact.

@@ -115,24 +115,22 @@ namespace Viscoplastic
     bool
     slips(const unsigned int p) const
     {
-      return !face.points[p].is_obstacle && !state.sticks[p] &&
-             state.slip[p].norm() > 0.;
+      return p < obstacle && !state.sticks[p] && state.slip[p].norm() > 0.;
     }
 
     /// Whether a point's multiplier is an unknown of fit().
     bool
     takes_part(const unsigned int p) const
     {
-      const ContactLayout::Point &point = face.points[p];
-      return state.blocks(point, p) ||
-             (law != nullptr && !point.is_obstacle && !slips(p));
+      return state.blocks(face.points[p], p) ||
+             (law != nullptr && p < obstacle && !slips(p));
     }
 
     /// Whether an obstacle is compliant and in contact.
     bool
     is_spring(const unsigned int o) const
     {
-      return state.sticks[o] && face.points[o].gives_way();
+      return state.sticks[o] && !face.points[o].compliance.is_rigid();
     }
 
     /// The part of a point's friction bound that does not depend on the

@@ -59,14 +59,15 @@ namespace Viscoplastic
       return sum;
     }
 
-    /// The penetration at a force p > 0.
+    /// The penetration at a force p; zero without force or compliance.
     double
     penetration(const double p) const;
 
-    /// The solution of w = @p free_w - @p flexibility p(w), where @p free_w > 0
-    /// is the penetration without contact force.
+    /// The force at which the obstacle, also a rigid one, stops a node that
+    /// would penetrate by @p free_w without it, and by @p flexibility less for
+    /// each unit of force: p(w) with w = @p free_w - @p flexibility p(w).
     double
-    penetration(const double flexibility, const double free_w) const;
+    stopping_force(const double flexibility, const double free_w) const;
 
     /// A bound on the complementarity defect Phi(w) + Phi*(p) - p w >= 0 of a
     /// force @p p >= 0 at @p w > 0, with Phi = energy() and its conjugate Phi*;

@@ -51,9 +51,9 @@ namespace Viscoplastic
     types::global_dof_index
     n_global_points(const bool of_obstacles = false) const
     {
-      types::global_dof_index n = 0;
-      for (const ContactLayout::Point &point : layout().points)
-        n += point.is_obstacle == of_obstacles;
+      const auto points = layout().points_of_kind(of_obstacles);
+      const types::global_dof_index n =
+        std::distance(points.begin(), points.end());
       return Utilities::MPI::sum(n, space.communicator);
     }
 
@@ -123,11 +123,11 @@ namespace Viscoplastic
       return any_obstacles;
     }
 
-    /// Whether there are compliant obstacles (normal compliance) on any rank.
+    /// Whether there are compliant obstacles on any rank.
     bool
-    gives_way() const
+    has_normal_compliance() const
     {
-      return any_gives_way;
+      return any_compliance;
     }
 
     /// Set the distance of each obstacle, and the force of compliant ones, in a
@@ -176,11 +176,9 @@ namespace Viscoplastic
     Tensor<1, dim>
     resultant(const ContactState &state, const bool of_obstacles = false) const
     {
-      const ContactLayout &face = layout();
-      Tensor<1, dim>       sum;
-      for (unsigned int p = 0; p < face.points.size(); ++p)
-        if (face.points[p].is_obstacle == of_obstacles)
-          sum += cartesian(p, state.multiplier[p]);
+      Tensor<1, dim> sum;
+      for (const unsigned int p : layout().points_of_kind(of_obstacles))
+        sum += cartesian(p, state.multiplier[p]);
       return Utilities::MPI::sum(sum, space.communicator);
     }
 
@@ -291,7 +289,8 @@ namespace Viscoplastic
 
     /// Sum the shares of each friction point, or of each obstacle, times
     /// factor(sample) and times the factor of the point's slip rate (null:
-    /// none; empty: of rate zero). Collective.
+    /// none; empty: of rate zero). Without `of_obstacles`, entries of obstacles
+    /// are zero, and conversely. Collective.
     std::vector<double>
     sum_shares(const std::function<double(const Sample &)> &factor,
                const bool                       of_obstacles = false,
@@ -312,7 +311,7 @@ namespace Viscoplastic
     std::vector<double>                                point_weights;
     /// int phi over the primary boundaries, at first components of nodes.
     LinearAlgebra::distributed::Vector<double> other_side_weights;
-    bool bounds_vary, any_obstacles = false, any_gives_way = false,
+    bool bounds_vary, any_obstacles = false, any_compliance = false,
                       any_computed_pressure = false, any_rate = false;
     mutable std::optional<std::vector<double>> constant_bounds;
   };

@@ -38,7 +38,7 @@ namespace Viscoplastic
     Tensor<1, dim> map, fixed;
     /// Boundary ids with this normal; either all or none are compliant.
     std::vector<types::boundary_id> boundary_ids;
-    bool                            gives_way = false;
+    bool                            is_compliant = false;
   };
 
 

@@ -222,10 +222,6 @@ namespace Viscoplastic
            const ContactState        &contact,
            QuantityEstimate          &estimate) const;
 
-    /// Whether friction holds a point.
-    bool
-    holds(const ContactState &contact, const unsigned int p) const;
-
     /// Settle the error with which points come to rest in a step, for
     /// quantities other than sums over steps. Collective.
     void

@@ -106,7 +106,7 @@ namespace Viscoplastic
 
     /// Whether the foundation is compliant.
     bool
-    gives_way() const
+    has_normal_compliance() const
     {
       return contact_law != nullptr && contact_law->make;
     }

@@ -147,11 +147,13 @@ namespace Viscoplastic
   {
     StressSummary<dim> result;
     LargestPlace<dim>  largest_mises;
+    const bool         has_stages = stress_space.space.scene.has_stages();
     double             volume = 0., strains = 0.;
     for (std::size_t c = 0; c < stress_space.n_cells(); ++c)
       {
         const auto &cell = stress_space.space.cells[c];
-        if (!stress_space.space.scene.is_present(cell->material_id()))
+        if (has_stages &&
+            !stress_space.space.scene.is_present(cell->material_id()))
           continue;
         const SymmetricTensor<2, 3> mean_strain =
           stress_space.mean_strain(c, state.u.begin());

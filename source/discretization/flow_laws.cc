@@ -296,7 +296,8 @@ namespace Viscoplastic
     const MPI_Comm            comm         = stress_space.space.communicator;
     const IrreversibleStress &z            = state.z;
     const auto                now          = laws.at(t, state.history);
-    FlowRate                  result{IrreversibleStress(z.size()), 0., 0.};
+    FlowRate                  result{{}, 0., 0.};
+    result.rate.reserve(z.size());
     result.history_rate.resize(state.history.size());
     // Predictions, evaluated on the side before t, do not need it.
     const auto &quantity = stress_space.space.scene.quantity;
@@ -312,12 +313,13 @@ namespace Viscoplastic
     fail_together(comm, [&] {
       for (std::size_t c = 0; c < stress_space.n_cells(); ++c)
         {
-          if (laws.source_solution)
-            for (unsigned int s = 0; s < n; ++s)
-              result.rate[c * n + s] = laws.source(now, c, s, side);
           const ViscoplasticLaw *law = now.law(c);
           if (law == nullptr)
-            continue;
+            {
+              for (unsigned int s = 0; s < n; ++s)
+                result.rate.push_back(laws.source(now, c, s, side));
+              continue;
+            }
           const Stiffness &stiffness = stress_space.moduli(c);
           stress_space.strains(c, state.u.begin(), strain.data());
           for (unsigned int s = 0; s < n; ++s)
@@ -330,7 +332,9 @@ namespace Viscoplastic
                     flow.data());
           for (unsigned int s = 0; s < n; ++s)
             {
-              result.rate[c * n + s] += flow[s].rate;
+              result.rate.push_back(flow[s].rate);
+              if (laws.source_solution)
+                result.rate.back() += laws.source(now, c, s, side);
               const double r = flow[s].relaxation_rate;
               // A NaN would compare as no limit at all.
               if (!(r >= 0.))

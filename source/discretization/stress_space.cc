@@ -128,18 +128,20 @@ namespace Viscoplastic
                             const double          *u,
                             SymmetricTensor<2, 3> *strain) const
   {
-    const NodalValues values = displacements(cell, u);
-    const double      zz     = space.axial_strain(u);
-    double            mean   = 0.;
+    const NodalValues     values   = displacements(cell, u);
+    const double          zz       = space.axial_strain(u);
+    const std::size_t     first    = space.shapes[cell] * n_samples;
+    const Tensor<1, dim> *gradient = &gradients[first * n_vertices];
+    const double         *weight   = &weights[first];
+    double                mean     = 0.;
     for (unsigned int s = 0; s < n_samples; ++s)
       {
-        const std::size_t first =
-          (space.shapes[cell] * n_samples + s) * n_vertices;
-        strain[s] = strain_at(values,
-                              &gradients[first],
-                              hoops.empty() ? nullptr : &hoops[first],
-                              zz);
-        mean += trace(strain[s]) * weight(cell, s);
+        strain[s] =
+          strain_at(values,
+                    gradient + s * n_vertices,
+                    hoops.empty() ? nullptr : &hoops[(first + s) * n_vertices],
+                    zz);
+        mean += trace(strain[s]) * weight[s];
       }
     if (mean_dilatation && n_samples > 1)
       {

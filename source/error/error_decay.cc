@@ -64,9 +64,9 @@ namespace Viscoplastic
       relaxation =
         error_relaxation(*law, {}, {}, k, *stiffness, now.point(cell, 0));
     else if (is_radial)
-      relaxation = radial_relaxation(k * rate.relaxation[i][0],
-                                     k * rate.relaxation[i][1],
-                                     rate.rate[i]);
+      relaxation.set_radial(k * rate.relaxation[i][0],
+                            k * rate.relaxation[i][1],
+                            rate.rate[i]);
     else
       relaxation = error_relaxation(*law, stress, strain, k, *stiffness, point);
     is_known = is_uniform;

@@ -12,11 +12,10 @@ namespace Viscoplastic
   {
     if (across[c][opposite(vertex)] == numbers::invalid_unsigned_int)
       return {};
-    const unsigned int node    = nodes[c][opposite(vertex)];
-    const double       density = energy_density(c, recovered(node)),
-                 energy        = density * sums.local_element(node + 2);
-    return Patch{density,
-                 energy,
+    const unsigned int node = nodes[c][opposite(vertex)];
+    const double       energy =
+      energy_density(c, recovered(node)) * sums.local_element(node + 2);
+    return Patch{energy,
                  std::max(0., sums.local_element(node) - energy),
                  sums.local_element(node + 1)};
   }
@@ -39,45 +38,56 @@ namespace Viscoplastic
                              const unsigned int i) -> double               &{
       return field.local_element(nodes[c][v] + i);
     };
+    // A vertex is singular if, in the adjacent cell of the largest energy
+    // density, strains grow most toward this vertex, and is_curved(): bending
+    // and holes are not singular.
     std::vector<double> densities(local.cells.size());
-    sums = 0.;
+    const auto          raise =
+      [&](const unsigned int c, const unsigned int v, const unsigned int i) {
+        node(maxima, c, v, i) = std::max(node(maxima, c, v, i), densities[c]);
+      };
+    sums   = 0.;
+    maxima = 0.;
     for (const unsigned int c : part.cells)
       {
-        densities[c] = energy_density(c, means[c]);
+        const double volume = local.stress_space.volume(c);
+        densities[c]        = energy_density(c, means[c]);
         for (unsigned int v = 0; v < n_vertices; ++v)
           {
-            node(sums, c, v, 0) += densities[c] * local.stress_space.volume(c);
+            node(sums, c, v, 0) += densities[c] * volume;
             node(sums, c, v, 1) += squares[c];
-            node(sums, c, v, 2) += local.stress_space.volume(c);
+            node(sums, c, v, 2) += volume;
+            raise(c, v, 0);
           }
       }
     sums.compress(VectorOperation::add);
     sums.update_ghost_values();
-
-    // A vertex is singular if, in the adjacent cell of the largest energy
-    // density, strains grow most toward this vertex, and is_curved(): bending
-    // and holes are not singular.
-    maxima = 0.;
+    maxima.compress(VectorOperation::max);
+    maxima.update_ghost_values();
+    // The growth of the density toward a vertex; zero where it is not singular.
+    const auto growth = [&](const unsigned int c, const unsigned int v) {
+      if (across[c][opposite(v)] == numbers::invalid_unsigned_int)
+        return 0.;
+      const double around = energy_density(c, recovered(nodes[c][opposite(v)]));
+      return densities[c] > least_growth * around && is_curved(c, v, means) ?
+               densities[c] / around :
+               0.;
+    };
+    std::vector<std::pair<unsigned int, unsigned int>> grows;
     for (const unsigned int c : part.cells)
-      {
-        std::array<double, n_vertices> growth{};
-        for (unsigned int v = 0; v < n_vertices; ++v)
-          if (const auto around = patch(c, v);
-              around && densities[c] > least_growth * around->density &&
-              is_curved(c, v, means))
-            growth[v] = densities[c] / around->density;
-        const double largest = *std::max_element(growth.begin(), growth.end());
-        for (unsigned int v = 0; v < n_vertices; ++v)
-          {
-            const auto raise = [&](const unsigned int i) {
-              node(maxima, c, v, i) =
-                std::max(node(maxima, c, v, i), densities[c]);
-            };
-            raise(0);
-            if (largest > 0. && growth[v] >= nearly * largest)
-              raise(1);
-          }
-      }
+      for (unsigned int v = 0; v < n_vertices; ++v)
+        if (densities[c] >= nearly * node(maxima, c, v, 0))
+          if (const double here = growth(c, v); here > 0.)
+            {
+              double largest = here;
+              for (unsigned int w = 0; w < n_vertices; ++w)
+                largest = std::max(largest, growth(c, w));
+              if (here >= nearly * largest)
+                grows.emplace_back(c, v);
+            }
+    maxima.zero_out_ghost_values();
+    for (const auto &[c, v] : grows)
+      raise(c, v, 1);
     maxima.compress(VectorOperation::max);
     maxima.update_ghost_values();
     const auto is_singular = [&](const unsigned int c, const unsigned int v) {

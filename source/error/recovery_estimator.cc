@@ -10,14 +10,10 @@ namespace Viscoplastic
   template <int dim>
   RecoveryEstimator<dim>::RecoveryEstimator(const LocalCells<dim> &cells)
     : local(cells)
-    , components(dim == 3 ? std::vector<unsigned int>{0, 1, 2, 3, 4, 5} :
-                 cells.has_hoops || cells.stress_space.space.axial ?
-                            std::vector<unsigned int>{0, 1, 2, 3} :
-                            std::vector<unsigned int>{0, 1, 3})
   {
     const AdmissibleSpace<dim>      &space   = cells.stress_space.space;
     const AffineConstraints<double> &hangs   = space.cartesian_hanging_nodes();
-    const unsigned int               n       = components.size();
+    constexpr unsigned int           n       = n_components;
     const auto                       dofs_of = [&](const IndexSet &of_nodes) {
       IndexSet result(of_nodes.size() / dim * n);
       for (auto range = of_nodes.begin_intervals();
@@ -233,8 +229,8 @@ namespace Viscoplastic
       {
         const SymmetricTensor<2, 3> integral = 1. / widths[c] * means[c];
         for (const unsigned int node : nodes[c])
-          for (unsigned int i = 0; i < components.size(); ++i)
-            nodal[node + i] += integral.access_raw_entry(components[i]);
+          for (unsigned int i = 0; i < n_components; ++i)
+            nodal[node + i] += integral.access_raw_entry(i);
       }
     values.compress(VectorOperation::add);
     scale(values, part.inverse_weight);
@@ -269,8 +265,8 @@ namespace Viscoplastic
         const Tensor<1, 3>    across = strain * normal,
                            shear     = across - (across * normal) * normal;
         strain -= 2. * symmetrize(outer_product(shear, normal));
-        for (unsigned int i = 0; i < components.size(); ++i)
-          nodal[node + i] = strain.access_raw_entry(components[i]);
+        for (unsigned int i = 0; i < n_components; ++i)
+          nodal[node + i] = strain.access_raw_entry(i);
       }
   }
 
@@ -281,10 +277,9 @@ namespace Viscoplastic
   RecoveryEstimator<dim>::scale(NodalVector               &strains,
                                 const std::vector<double> &factors) const
   {
-    const unsigned int n     = components.size();
-    double            *entry = strains.begin();
+    double *entry = strains.begin();
     for (std::size_t i = 0; i < strains.locally_owned_size(); ++i)
-      entry[i] *= factors[i / n];
+      entry[i] *= factors[i / n_components];
   }
 
 
@@ -295,7 +290,7 @@ namespace Viscoplastic
   {
     double *const nodal = values.begin();
     for (const HangingNode &hanging : part.hanging_nodes)
-      for (unsigned int i = 0; i < components.size(); ++i)
+      for (unsigned int i = 0; i < n_components; ++i)
         {
           nodal[hanging.node + i] = 0.;
           for (const auto &[parent, factor] : hanging.parents)
@@ -324,16 +319,15 @@ namespace Viscoplastic
         // strain.
         SymmetricTensor<2, 3> missed = means[c];
         for (const unsigned int node : nodes[c])
-          for (unsigned int i = 0; i < components.size(); ++i)
-            missed.access_raw_entry(components[i]) -=
-              nodal[node + i] / n_vertices;
+          for (unsigned int i = 0; i < n_components; ++i)
+            missed.access_raw_entry(i) -= nodal[node + i] / n_vertices;
         missed *= 2. / widths[c];
         for (const unsigned int v : ends[c])
           {
             const bool is_skipped = *left++;
-            for (unsigned int i = 0; i < components.size() && !is_skipped; ++i)
+            for (unsigned int i = 0; i < n_components && !is_skipped; ++i)
               change.local_element(nodes[c][v] + i) +=
-                missed.access_raw_entry(components[i]);
+                missed.access_raw_entry(i);
           }
       }
     change.compress(VectorOperation::add);
@@ -383,7 +377,7 @@ namespace Viscoplastic
   {
     std::array<SymmetricTensor<2, 3>, n_points> result;
     const double                               *nodal = values.begin();
-    for (unsigned int i = 0; i < components.size(); ++i)
+    for (unsigned int i = 0; i < n_components; ++i)
       {
         double at_vertices[n_vertices];
         for (unsigned int v = 0; v < n_vertices; ++v)
@@ -393,7 +387,7 @@ namespace Viscoplastic
             double recovered = 0.;
             for (unsigned int v = 0; v < n_vertices; ++v)
               recovered += shape_values[q][v] * at_vertices[v];
-            result[q].access_raw_entry(components[i]) = recovered;
+            result[q].access_raw_entry(i) = recovered;
           }
       }
     for (unsigned int q = 0; q < n_points; ++q)
@@ -419,8 +413,8 @@ namespace Viscoplastic
   RecoveryEstimator<dim>::recovered(const unsigned int node) const
   {
     SymmetricTensor<2, 3> result;
-    for (unsigned int i = 0; i < components.size(); ++i)
-      result.access_raw_entry(components[i]) = values.local_element(node + i);
+    for (unsigned int i = 0; i < n_components; ++i)
+      result.access_raw_entry(i) = values.local_element(node + i);
     return result;
   }
 

@@ -72,10 +72,10 @@ namespace Viscoplastic
                     law.remainder ? nodes.size() * n_points : 0);
 
     // The volumetric strain at which the elastic pressure cancels that of z.
-    SymmetricTensor<2, 3> unit; // in the components that strains have
-    for (const unsigned int i : components)
-      if (i < 3)
-        unit.access_raw_entry(i) = 1.;
+    // In plane strain without the component zz, which no strain has.
+    SymmetricTensor<2, 3> unit = unit_symmetric_tensor<3>();
+    if (dim == 2 && !local.has_hoops && !local.stress_space.space.axial)
+      unit[2][2] = 0.;
     const auto swelling = [&](const unsigned int           c,
                               const SymmetricTensor<2, 3> &stress) {
       return -trace(stress) /

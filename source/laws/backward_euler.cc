@@ -265,15 +265,16 @@ namespace Viscoplastic
                    const Stiffness             &stiffness,
                    const LawPoint              &point)
   {
+    ErrorRelaxation result;
     if (const auto factors = radial_factors(law, stress, k, stiffness, point))
       {
         const auto &[a, b, s] = *factors;
-        return radial_relaxation(a, b, s);
+        result.set_radial(a, b, s);
       }
-    ErrorRelaxation result;
-    result.any =
-      invert(identity_tensor<3>() -
-             k * law.step_tangents(stress, strain, k, stiffness, point).stress);
+    else
+      result.any = invert(
+        identity_tensor<3>() -
+        k * law.step_tangents(stress, strain, k, stiffness, point).stress);
     return result;
   }
 

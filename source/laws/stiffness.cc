@@ -140,4 +140,18 @@ namespace Viscoplastic
   {
     return anisotropic_data->compliance * stress;
   }
+
+
+
+  double
+  Stiffness::anisotropic_product(const unsigned int           n,
+                                 const double                *weights,
+                                 const SymmetricTensor<2, 3> *a,
+                                 const SymmetricTensor<2, 3> *b) const
+  {
+    double products = 0.;
+    for (unsigned int i = 0; i < n; ++i)
+      products += weights[i] * (anisotropic_strain(a[i]) * b[i]);
+    return products;
+  }
 } // namespace Viscoplastic

@@ -164,11 +164,11 @@ namespace Viscoplastic
 
     /// Return the strain of nodal values from vertex gradients of shape
     /// functions, vertex hoop strains or null, and the uniform strain zz.
-    static SymmetricTensor<2, 3>
-    strain_at(const NodalValues    &values,
-              const Tensor<1, dim> *gradient,
-              const double         *hoop,
-              double                zz)
+    static DEAL_II_ALWAYS_INLINE SymmetricTensor<2, 3>
+                                 strain_at(const NodalValues    &values,
+                                           const Tensor<1, dim> *gradient,
+                                           const double         *hoop,
+                                           double                zz)
     {
       Tensor<2, dim> sum;
       for (unsigned int v = 0; v < n_vertices; ++v)

@@ -117,8 +117,11 @@ namespace Viscoplastic
              OfDual                                   &dual) const;
 
   private:
-    static constexpr unsigned int n_vertices = LocalCells<dim>::n_vertices,
-                                  n_points   = LocalCells<dim>::n_points;
+    static constexpr unsigned int n_vertices   = LocalCells<dim>::n_vertices,
+                                  n_points     = LocalCells<dim>::n_points,
+                                  n_components = dim == 2 ? 4 : 6;
+    // Strains have the first n_components components of SymmetricTensor<2, 3>.
+
     /// By cell, including ghosts.
     using Strains     = std::vector<SymmetricTensor<2, 3>>;
     using NodalVector = LinearAlgebra::distributed::Vector<double>;
@@ -147,11 +150,11 @@ namespace Viscoplastic
     };
 
     /// The cells around a node, twice as large as one of them: the energy of
-    /// their mean strain, by volume and in all, the variation of their means
-    /// around it, and the sum of their eta_K^2.
+    /// their mean strain, the variation of their means around it, and the sum
+    /// of their eta_K^2.
     struct Patch
     {
-      double density, energy, variation, error;
+      double energy, variation, error;
     };
 
     /// Return the patch around the vertex of cell @p c opposite to @p vertex,
@@ -247,9 +250,6 @@ namespace Viscoplastic
             double                  *dilatations = nullptr) const;
 
     const LocalCells<dim> &local;
-    /// The nonzero components of strains, as SymmetricTensor counts them: in
-    /// the plane, in the plane and normal to it, or all.
-    const std::vector<unsigned int> components;
     /// Local indices of the first component at the vertices of owned cells.
     std::vector<std::array<unsigned int, n_vertices>> nodes;
     /// The vertices of owned cells on faces where the part ends, except for

@@ -145,6 +145,19 @@ namespace Viscoplastic
     SymmetricTensor<2, 3>                direction;
     std::optional<SymmetricTensor<4, 3>> any; // if set, used alone
 
+    /// Become the map for radial flow that divides the deviator of a trial
+    /// stress by 1 + a, and changes of it along @p flow by 1 + b.
+    void
+    set_radial(const double                 a,
+               const double                 b,
+               const SymmetricTensor<2, 3> &flow)
+    {
+      const double square = flow * flow;
+      of_deviators        = 1. / (1. + a);
+      more_along = square > 0. ? (a - b) / ((1. + a) * (1. + b) * square) : 0.;
+      direction  = flow;
+    }
+
     SymmetricTensor<2, 3>
     operator*(const SymmetricTensor<2, 3> &error) const
     {
@@ -159,22 +172,6 @@ namespace Viscoplastic
       return result;
     }
   };
-
-  /// Return the map for radial flow that divides the deviator of a trial stress
-  /// by 1 + a, and changes of it along @p direction (of any length) by 1 + b.
-  inline ErrorRelaxation
-  radial_relaxation(const double                 a,
-                    const double                 b,
-                    const SymmetricTensor<2, 3> &direction)
-  {
-    ErrorRelaxation result;
-    const double    square = direction * direction;
-    result.of_deviators    = 1. / (1. + a);
-    if (square > 0.)
-      result.more_along = (a - b) / ((1. + a) * (1. + b) * square);
-    result.direction = direction;
-    return result;
-  }
 
   ErrorRelaxation
   error_relaxation(const ViscoplasticLaw       &law,

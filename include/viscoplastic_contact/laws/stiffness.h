@@ -135,6 +135,11 @@ namespace Viscoplastic
     anisotropic_stress(const SymmetricTensor<2, 3> &strain) const;
     SymmetricTensor<2, 3>
     anisotropic_strain(const SymmetricTensor<2, 3> &stress) const;
+    double
+    anisotropic_product(const unsigned int           n,
+                        const double                *weights,
+                        const SymmetricTensor<2, 3> *a,
+                        const SymmetricTensor<2, 3> *b) const;
 
     double                             mu;
     double                             bulk;
@@ -235,18 +240,20 @@ namespace Viscoplastic
                                    const SymmetricTensor<2, 3> *a,
                                    const SymmetricTensor<2, 3> *b) const
   {
+    if (anisotropic_data)
+      return anisotropic_product(n, weights, a, b);
     double products = 0., pressures = 0.;
     for (unsigned int i = 0; i < n; ++i)
-      if (anisotropic_data)
-        products += weights[i] * (anisotropic_strain(a[i]) * b[i]);
-      else
-        {
-          products += weights[i] * (a[i] * b[i]);
-          pressures += weights[i] * (trace(a[i]) * trace(b[i]));
-        }
-    return anisotropic_data ?
-             products :
-             (products - pressures / 3.) / (2. * mu) + pressures / (9. * bulk);
+      {
+        // By components, of which the compiler makes half as many instructions
+        // as of the operators.
+        const double *x = a[i].begin_raw(), *y = b[i].begin_raw();
+        const double  shear = x[3] * y[3] + x[4] * y[4] + x[5] * y[5];
+        products +=
+          weights[i] * (2. * shear + x[0] * y[0] + x[1] * y[1] + x[2] * y[2]);
+        pressures += weights[i] * ((x[0] + x[1] + x[2]) * (y[0] + y[1] + y[2]));
+      }
+    return (products - pressures / 3.) / (2. * mu) + pressures / (9. * bulk);
   }
 
 

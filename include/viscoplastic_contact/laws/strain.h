@@ -55,7 +55,7 @@ namespace Viscoplastic
 
   /// Return a strain with its trace replaced by @p dilatation. With mean
   /// dilatation, stresses follow from strains with the mean over the cell.
-  inline SymmetricTensor<2, 3>
+  DEAL_II_ALWAYS_INLINE inline SymmetricTensor<2, 3>
   with_dilatation(SymmetricTensor<2, 3> strain, const double dilatation)
   {
     const double change = (dilatation - trace(strain)) / 3.;

@@ -85,21 +85,6 @@ namespace Viscoplastic
         points.exchange(archive);
       }
     };
-
-
-
-    /// Return the fields that have been packed.
-    template <typename Field, std::size_t n>
-    std::vector<Field>
-    packed_ones(const std::array<bool, n>  &is_packed,
-                const std::array<Field, n> &fields)
-    {
-      std::vector<Field> result;
-      for (std::size_t f = 0; f < n; ++f)
-        if (is_packed[f])
-          result.push_back(fields[f]);
-      return result;
-    }
   } // namespace
 
 
@@ -155,17 +140,19 @@ namespace Viscoplastic
         vertices.push_back(with_values);
         if (face != nullptr)
           points.vertices.push_back(with_points);
-        for (const IrreversibleStress *field : sample_fields(state))
-          if (!field->empty())
-            for (unsigned int s = 0; s < stress_space.n_samples; ++s)
-              {
-                const auto &sample =
-                  (*field)[owned_cell * stress_space.n_samples + s];
-                samples.insert(samples.end(),
-                               sample.begin_raw(),
-                               sample.begin_raw() +
-                                 sample.n_independent_components);
-              }
+        for_each_sample_field(
+          state, [&, &samples = samples](const auto &field) {
+            if (!field.empty())
+              for (unsigned int s = 0; s < stress_space.n_samples; ++s)
+                {
+                  const auto &sample =
+                    field[owned_cell * stress_space.n_samples + s];
+                  samples.insert(samples.end(),
+                                 sample.begin_raw(),
+                                 sample.begin_raw() +
+                                   sample.n_independent_components);
+                }
+          });
         if (squared_estimate.size() > 0)
           estimate.push_back(squared_estimate[cell->active_cell_index()]);
         ++owned_cell;
@@ -331,17 +318,23 @@ namespace Viscoplastic
     AssertDimension(packed.meshes.size(), packed.fields.size());
     const AdmissibleSpace<dim> &space = stress_space.space;
     const auto &triangulation         = space.dof_handler.get_triangulation();
-    const auto  targets =
-      packed_ones(packed.has_nodal_field, nodal_fields(state));
-    const auto sampled =
-      packed_ones(packed.has_sample_field, sample_fields(state));
-    const unsigned int n_fields = targets.size();
-    const std::size_t  n_z = stress_space.n_samples * 6; // per cell and field
+    std::vector<DistributedVector *> targets; // the packed ones
+    for (unsigned int f = 0; f < packed.has_nodal_field.size(); ++f)
+      if (packed.has_nodal_field[f])
+        targets.push_back(nodal_fields(state)[f]);
+    const unsigned int n_fields  = targets.size();
+    const auto        &is_packed = packed.has_sample_field;
+    const std::size_t  n_z = stress_space.n_samples * 6, // per cell and field
+      n_sampled =
+        n_z * std::count(is_packed.begin(), is_packed.end(), true); // per cell
 
     const auto                     cells = local_cells(space);
     std::vector<DistributedVector> values(n_fields, space.owned_vector());
-    for (IrreversibleStress *field : sampled)
-      field->resize(space.cells.size() * stress_space.n_samples);
+    const bool                    *is_present = is_packed.data();
+    for_each_sample_field(state, [&](auto &field) {
+      field.resize(*is_present++ ? space.cells.size() * stress_space.n_samples :
+                                   0);
+    });
     if (packed.has_estimate)
       squared_estimate.reinit(triangulation.n_active_cells());
     const auto           face_nodes = nodes_by_dof(face);
@@ -363,7 +356,7 @@ namespace Viscoplastic
         const auto &[vertices, nodal, samples, estimate, points] = part;
         require_sense(archive.is_at_end() && vertices.size() == ids.size() &&
                       points.vertices.size() == (face ? ids.size() : 0) &&
-                      samples.size() == sampled.size() * n_z * ids.size() &&
+                      samples.size() == n_sampled * ids.size() &&
                       estimate.size() ==
                         (packed.has_estimate ? ids.size() : 0));
         ContactReader of_nodes(points, layout, state.contact, truncations);
@@ -381,12 +374,13 @@ namespace Viscoplastic
             if (!is_known || !found->second.second)
               continue;
             ++n_cells;
-            for (std::size_t f = 0; f < sampled.size(); ++f)
-              for (std::size_t j = 0; j < n_z; ++j)
-                (*sampled[f])[*found->second.second * stress_space.n_samples +
-                              j / 6]
-                  .begin_raw()[j % 6] =
-                  samples[(i * sampled.size() + f) * n_z + j];
+            const double *from = samples.data() + i * n_sampled;
+            for_each_sample_field(state, [&](auto &field) {
+              if (!field.empty())
+                for (std::size_t j = 0; j < n_z; ++j)
+                  field[*found->second.second * stress_space.n_samples + j / 6]
+                    .begin_raw()[j % 6] = *from++;
+            });
             if (packed.has_estimate)
               squared_estimate[found->second.first->active_cell_index()] =
                 estimate[i];

@@ -387,9 +387,11 @@ namespace Viscoplastic
           scene.is_present(stress_space.space.cells[c]->material_id());
         if (is_present == was_present[c])
           continue;
-        for (auto *field : sample_fields(state))
-          if (!field->empty())
-            std::fill_n(field->begin() + c * n, n, SymmetricTensor<2, 3>());
+        for_each_sample_field(state, [&](auto &field) {
+          if (!field.empty())
+            for (unsigned int s = 0; s < n; ++s)
+              field[c * n + s].clear();
+        });
         if (!is_present)
           continue;
         stress_space.strains(c, state.u.begin(), strain.data());

@@ -38,7 +38,7 @@ namespace Viscoplastic
 
 
   template <int dim>
-  std::array<bool, 7>
+  std::array<bool, n_sample_fields>
   ErrorEstimator<dim>::has_sample_fields(const Scene<dim> &scene)
   {
     const bool estimates = scene.parameters.error_control.error_estimator &&
@@ -71,9 +71,11 @@ namespace Viscoplastic
     initial.errors.initial =
       initial_data_error(stress_space, state, &squared_by_cell);
     const auto has_field = has_sample_fields(scene);
-    for (unsigned int f = 0; f < has_field.size(); ++f)
-      if (has_field[f])
-        sample_fields(state)[f]->resize(state.z.size());
+    auto       has       = has_field.begin();
+    for_each_sample_field(state, [&](auto &field) {
+      if (*has++)
+        field.resize(state.z.size());
+    });
     return squared_by_cell;
   }
 
@@ -133,9 +135,67 @@ namespace Viscoplastic
 
   template <int dim>
   void
+  ErrorEstimator<dim>::assess_change(const StressSpace<dim>    &stress_space,
+                                     const EvaluatedState<dim> &accepted,
+                                     EvaluatedState<dim>       &end) const
+  {
+    const AdmissibleSpace<dim> &space = stress_space.space;
+    const Forces<dim> &forces = end.forces, &old_forces = accepted.forces;
+    ErrorEstimate     &estimate = end.errors;
+    estimate.energy_norm        = energy_norm(forces);
+    estimate.algebraic          = end.report.error;
+    // a(d, d), a(d, v) below, and the square of the change of z.
+    std::vector<double>                products(3, 0.);
+    std::vector<SymmetricTensor<2, 3>> of_cell(stress_space.n_samples);
+    for (std::size_t i = 0; i < end.state.z.size();)
+      {
+        const std::size_t c = i / of_cell.size();
+        for (auto &change : of_cell)
+          {
+            change = end.state.z[i] - accepted.state.z[i];
+            ++i;
+          }
+        products[2] +=
+          stress_space.complementary_product(c, of_cell.data(), of_cell.data());
+      }
+    // With d = u_n - u_{n-1} and v = du_{n-1}, from a(u, .) of both states:
+    // |d/k - v|^2 = a(d, d)/k^2 - 2 a(d, v)/k + a(v, v).
+    const double      k        = end.state.k;
+    DistributedVector velocity = space.owned_vector();
+    space.to_frames(accepted.state.velocity, velocity);
+    const bool    has_z = forces.irreversible.size() > 0;
+    const double *u = forces.u.begin(), *old_u = old_forces.u.begin(),
+                 *v = velocity.begin(), *internal = forces.internal.begin(),
+                 *old_internal = old_forces.internal.begin(),
+                 *z            = has_z ? forces.irreversible.begin() : nullptr,
+                 *old_z = has_z ? old_forces.irreversible.begin() : nullptr;
+    for (unsigned int i = 0; i < velocity.locally_owned_size(); ++i)
+      {
+        double change = internal[i] - old_internal[i];
+        if (has_z)
+          change = (internal[i] - z[i]) - (old_internal[i] - old_z[i]);
+        products[0] += change * (u[i] - old_u[i]);
+        products[1] += change * v[i];
+      }
+    Utilities::MPI::sum(products, space.communicator, products);
+    estimate.irreversible_change = std::sqrt(products[2]);
+    estimate.velocity_square     = products[0] / (k * k);
+    const double jump = estimate.velocity_square - 2. / k * products[1] +
+                        accepted.errors.velocity_square;
+    // A smaller jump is rounding.
+    const bool is_jump = jump > 1e-12 * (estimate.velocity_square +
+                                         accepted.errors.velocity_square);
+    estimate.velocity_variation =
+      std::sqrt(Utilities::fixed_power<2>(accepted.errors.velocity_variation) +
+                (is_jump ? k / 3. * jump : 0.));
+  }
+
+
+
+  template <int dim>
+  void
   ErrorEstimator<dim>::assess(const FlowLaws<dim>       &laws,
                               const TimeDefect          &defect,
-                              const ContactReport       &report,
                               const SlipDefects         *slip_defects,
                               const double               slip_begun,
                               const double               missed_work,
@@ -145,21 +205,16 @@ namespace Viscoplastic
                               const FlowRate            *accepted_rate,
                               EvaluatedState<dim>       &end) const
   {
-    const AdmissibleSpace<dim> &space    = laws.stress_space.space;
-    const Forces<dim>          &forces   = end.forces;
-    const ErrorEstimate        &before   = accepted.errors;
-    ErrorEstimate              &estimate = end.errors;
-    estimate.initial                     = before.initial;
-    estimate.transfer                    = before.transfer;
-    estimate.history_adds                = !scene.keeps_history_at_points();
+    const ErrorEstimate &before   = accepted.errors;
+    ErrorEstimate       &estimate = end.errors;
+    estimate.initial              = before.initial;
+    estimate.transfer             = before.transfer;
+    estimate.history_adds         = !scene.keeps_history_at_points();
     estimate.friction =
       std::sqrt(Utilities::fixed_power<2>(before.friction) +
                 Utilities::fixed_power<2>(friction_calibration) *
                   (slip_defects != nullptr ? slip_defects->work : 0.) +
                 2. * missed_work);
-    estimate.energy_norm = energy_norm(forces);
-    estimate.algebraic   = report.error;
-
     estimate.creep_path = before.creep_path;
     estimate.slip_begun = slip_begun;
     if (scene.has_viscosity())
@@ -187,38 +242,6 @@ namespace Viscoplastic
     estimate.time        = std::hypot(estimate.time, estimate.swing);
     estimate.time_indicator =
       std::hypot(estimate.time_indicator, swing.energy_norm);
-
-    // With d = u_n - u_{n-1} and v = du_{n-1}, from a(u, .) of both states:
-    // |d/k - v|^2 = a(d, d)/k^2 - 2 a(d, v)/k + a(v, v).
-    const double      k        = end.state.k;
-    DistributedVector velocity = space.owned_vector();
-    space.to_frames(accepted.state.velocity, velocity);
-    std::vector<double> products(2, 0.); // a(d, d), a(d, v)
-    const Forces<dim>  &old_forces = accepted.forces;
-    const bool          has_z      = forces.irreversible.size() > 0;
-    const double       *u = forces.u.begin(), *old_u = old_forces.u.begin(),
-                 *v = velocity.begin(), *internal = forces.internal.begin(),
-                 *old_internal = old_forces.internal.begin(),
-                 *z            = has_z ? forces.irreversible.begin() : nullptr,
-                 *old_z = has_z ? old_forces.irreversible.begin() : nullptr;
-    for (unsigned int i = 0; i < velocity.locally_owned_size(); ++i)
-      {
-        double change = internal[i] - old_internal[i];
-        if (has_z)
-          change = (internal[i] - z[i]) - (old_internal[i] - old_z[i]);
-        products[0] += change * (u[i] - old_u[i]);
-        products[1] += change * v[i];
-      }
-    Utilities::MPI::sum(products, space.communicator, products);
-    estimate.velocity_square = products[0] / (k * k);
-    const double jump =
-      estimate.velocity_square - 2. / k * products[1] + before.velocity_square;
-    // A smaller jump is rounding.
-    const bool is_jump =
-      jump > 1e-12 * (estimate.velocity_square + before.velocity_square);
-    estimate.velocity_variation =
-      std::sqrt(Utilities::fixed_power<2>(before.velocity_variation) +
-                (is_jump ? k / 3. * jump : 0.));
   }
 
 

@@ -273,11 +273,9 @@ namespace Viscoplastic
     double                     error   = 0.;
     if (dual.norm > 0.) // on all ranks
       {
-        const IrreversibleStress &of_z =
-          is_sum ? state.time_error : state.carried_error;
         if (strains.empty())
           {
-            strains.resize(of_z.size());
+            strains.resize(state.z.size());
             for (std::size_t c = 0; c < space.n_cells(); ++c)
               {
                 auto *of_cell = &strains[c * space.n_samples];
@@ -286,8 +284,10 @@ namespace Viscoplastic
                   of_cell[s] *= space.weight(c, s);
               }
           }
-        for (std::size_t i = 0; i < of_z.size(); ++i)
-          error -= of_z[i] * strains[i];
+        for (std::size_t i = 0; i < strains.size(); ++i)
+          error -= (is_sum ? SymmetricTensor<2, 3>(state.time_error[i]) :
+                             state.carried_error[i]) *
+                   strains[i];
         error = Utilities::MPI::sum(error, d.space.communicator);
       }
     if (!is_sum && d.slipping_face())

@@ -112,7 +112,7 @@ namespace Viscoplastic
         for (unsigned int v = 0; v < n_vertices; ++v)
           if (is_at_end[v] && !is_at_end[opposite(v)])
             {
-              ends[c].push_back(v);
+              ends[c].set(v);
               parts[p].inverse_inner_weight[nodes[c][v] / n] += 1. / widths[c];
             }
         parts[p].cells.push_back(c);
@@ -247,8 +247,9 @@ namespace Viscoplastic
   {
     std::vector<bool> result;
     for (const unsigned int c : part.cells)
-      for (const unsigned int v : ends[c])
-        result.push_back(is_curved(c, v, means));
+      for (unsigned int v = 0; v < n_vertices; ++v)
+        if (ends[c][v])
+          result.push_back(is_curved(c, v, means));
     return result;
   }
 
@@ -313,7 +314,7 @@ namespace Viscoplastic
     const double *const nodal = values.begin();
     for (const unsigned int c : part.cells)
       {
-        if (ends[c].empty())
+        if (ends[c].none())
           continue;
         // Half of the nodes, corrected twofold, restore the mean of a linear
         // strain.
@@ -322,9 +323,9 @@ namespace Viscoplastic
           for (unsigned int i = 0; i < n_components; ++i)
             missed.access_raw_entry(i) -= nodal[node + i] / n_vertices;
         missed *= 2. / widths[c];
-        for (const unsigned int v : ends[c])
+        for (unsigned int v = 0; v < n_vertices; ++v)
           {
-            const bool is_skipped = *left++;
+            const bool is_skipped = !ends[c][v] || *left++;
             for (unsigned int i = 0; i < n_components && !is_skipped; ++i)
               change.local_element(nodes[c][v] + i) +=
                 missed.access_raw_entry(i);

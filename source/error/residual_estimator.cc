@@ -311,9 +311,9 @@ namespace Viscoplastic
     const SymmetricTensor<2, 3> *mean_z =
       local.mean_irreversible_stress(fields.z, means);
 
-    std::vector<Tensor<1, dim>> &tractions = traction_buffer;
-    tractions.resize((cells.size() * n_faces + subface_sides.size()) *
-                     n_face_points);
+    // sigma nu at all faces.
+    std::vector<Tensor<1, dim>> tractions(
+      (cells.size() * n_faces + subface_sides.size()) * n_face_points);
     for (std::size_t c = 0; c < cells.size(); ++c)
       {
         const StressTerms terms = stress_terms(c, fields, mean_z);

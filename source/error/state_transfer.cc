@@ -60,21 +60,18 @@ namespace Viscoplastic
     field_transfer.prepare_for_coarsening_and_refinement(present);
 
     // A field is present if any rank has it, as those without cells do not.
-    const auto sampled = sample_fields(state);
-    for (unsigned int f = 0; f < sampled.size(); ++f)
-      if (Utilities::MPI::max(sampled[f]->empty() ? 0 : 1,
-                              old_stress_space.space.communicator) == 1)
-        {
-          AssertDimension(sampled[f]->size(),
-                          old_stress_space.n_cells() * n_samples);
-          carried.push_back(f);
-          old_samples.push_back(*sampled[f]);
-        }
-    if (carried.empty())
+    for_each_sample_field(state, [&](const auto &field) {
+      is_carried.push_back(
+        Utilities::MPI::max(field.empty() ? 0 : 1,
+                            old_stress_space.space.communicator) == 1);
+      if (is_carried.back())
+        old_samples.emplace_back(field.begin(), field.end());
+    });
+    if (old_samples.empty())
       return;
-    if (old_stress_space.space.scene.has_viscosity())
+    is_carried.push_back(old_stress_space.space.scene.has_viscosity());
+    if (is_carried.back())
       {
-        carried.push_back(stress);
         old_samples.push_back(sampled_stress(old_stress_space, state));
         // z is the first field.
         for_children =
@@ -122,14 +119,15 @@ namespace Viscoplastic
       of_refined_cells += for_children.squared_error[cell->active_cell_index()];
     const bool of_children =
       status == Triangulation<dim>::CELL_REFINE && n_samples == 1;
-    IrreversibleStress values(carried.size() * (n_values + 1));
-    for (unsigned int f = 0; f < carried.size(); ++f)
+    const unsigned int n_fields = old_samples.size();
+    IrreversibleStress values(n_fields * (n_values + 1));
+    for (unsigned int f = 0; f < n_fields; ++f)
       {
         SymmetricTensor<2, 3>    *packed = &values[f * (n_values + 1)];
         const IrreversibleStress &old =
-          passes_on && f == 0               ? for_children.z :
-          passes_on && carried[f] == stress ? for_children.stress :
-                                              old_samples[f];
+          passes_on && f == 0            ? for_children.z :
+          passes_on && f == n_fields - 1 ? for_children.stress :
+                                           old_samples[f];
         if (status == Triangulation<dim>::CELL_COARSEN)
           {
             for (unsigned int child = 0; child < cell->n_children(); ++child)
@@ -168,13 +166,14 @@ namespace Viscoplastic
 
 
   template <int dim>
+  template <typename Field>
   void
   StateTransfer<dim>::unpack_samples(const CellIterator          &cell,
                                      const CellStatus             status,
                                      const SymmetricTensor<2, 3> *values,
                                      const StressSpace<dim> &new_stress_space,
                                      const std::vector<unsigned int> &new_cell,
-                                     IrreversibleStress              &z) const
+                                     Field                           &z) const
   {
     if (status == Triangulation<dim>::CELL_REFINE)
       {
@@ -189,7 +188,7 @@ namespace Viscoplastic
             volume += new_stress_space.volume(c);
             for (unsigned int s = 0; s < n_samples; ++s)
               {
-                SymmetricTensor<2, 3> &sample = z[c * n_samples + s];
+                auto &sample = z[c * n_samples + s];
                 if (n_samples == 1)
                   sample = values[child];
                 else
@@ -252,16 +251,16 @@ namespace Viscoplastic
           *targets[i] = fields[next++];
         }
 
-    if (carried.empty())
+    if (old_samples.empty())
       return result;
     result.of_refined_cells =
       Utilities::MPI::sum(of_refined_cells, space.communicator);
-    const auto of_state = sample_fields(result.state);
-    const auto sampled  = [&](const unsigned int f) {
-      return f == stress ? &result.stress : of_state[f];
+    auto       is_present = is_carried.cbegin();
+    const auto set_size   = [&](auto &field) {
+      field.resize(*is_present++ ? new_stress_space.n_cells() * n_samples : 0);
     };
-    for (const unsigned int f : carried)
-      sampled(f)->resize(new_stress_space.n_cells() * n_samples);
+    for_each_sample_field(result.state, set_size);
+    set_size(result.stress);
     std::vector<unsigned int> new_cell(triangulation.n_active_cells());
     unsigned int              index = 0;
     for (const auto &cell : space.cells)
@@ -279,13 +278,15 @@ namespace Viscoplastic
                                                 data.end(),
                                                 /* allow_compression = */
                                                 false);
-        for (unsigned int f = 0; f < carried.size(); ++f)
-          unpack_samples(cell,
-                         status,
-                         &values[f * (n_values + 1)],
-                         new_stress_space,
-                         new_cell,
-                         *sampled(carried[f]));
+        const SymmetricTensor<2, 3> *next         = values.data();
+        const auto                   unpack_field = [&](auto &field) {
+          if (field.empty())
+            return;
+          unpack_samples(cell, status, next, new_stress_space, new_cell, field);
+          next += n_values + 1;
+        };
+        for_each_sample_field(result.state, unpack_field);
+        unpack_field(result.stress);
       });
     return result;
   }

@@ -171,7 +171,7 @@ namespace Viscoplastic
       void
       add()
       {
-        state.time_error    = accepted.time_error;
+        state.time_error.resize(state.z.size());
         state.rate_slope    = accepted.rate_slope;
         state.carried_error = accepted.carried_error;
         state.history_error = accepted.history_error;
@@ -185,12 +185,11 @@ namespace Viscoplastic
             add_norms(c);
           }
         Utilities::MPI::sum(sums, stress_space.space.communicator, sums);
-        ErrorEstimate &estimate      = end.errors;
-        estimate.time_indicator      = std::sqrt(sums[of_step]);
-        estimate.time                = std::sqrt(sums[of_all_steps]);
-        estimate.irreversible_change = std::sqrt(sums[of_change]);
-        const double rate            = std::sqrt(sums[of_rate]);
-        estimate.creep_path          = old.errors.creep_path + k * rate;
+        ErrorEstimate &estimate = end.errors;
+        estimate.time_indicator = std::sqrt(sums[of_step]);
+        estimate.time           = std::sqrt(sums[of_all_steps]);
+        const double rate       = std::sqrt(sums[of_rate]);
+        estimate.creep_path     = old.errors.creep_path + k * rate;
         estimate.creep_time =
           estimate.creep_path > 0. ? estimate.creep_path / rate : 0.;
         estimate.remembered_indicator = estimate.time_indicator;
@@ -230,15 +229,16 @@ namespace Viscoplastic
         if (!half_way.empty())
           all -= k / 3. *
                  (accepted_rate.rate[i] + end.rate->rate[i] - 2. * half_way[i]);
-        changes[s] = z - old_z;
+        totals[s] = SymmetricTensor<2, 3>(accepted.time_error[i]);
         if (is_plain)
           {
-            state.time_error[i] += all;
+            totals[s] += all;
             if (carries)
               state.carried_error[i] += all;
           }
         else
           all = what_counts(c, s, i, all);
+        state.time_error[i] = totals[s];
         // Without an earlier slope, step control assumes zero.
         if (!has_slope)
           all +=
@@ -284,11 +284,11 @@ namespace Viscoplastic
           carried.z +=
             onset * accepted.k *
             (accepted.k * accepted.rate_slope[i] - accepted.k / k * change);
-        state.time_error[i] += carried.z + step;
+        totals[s] += carried.z + step;
         if (carries)
           state.carried_error[i] += carried.z + local;
         if (decay.growth)
-          state.time_error[i] = decay.fading * state.time_error[i];
+          totals[s] = decay.fading * totals[s];
         return step;
       }
 
@@ -299,12 +299,10 @@ namespace Viscoplastic
         const auto add = [&](const Norm norm, const SymmetricTensor<2, 3> *of) {
           sums[norm] += stress_space.complementary_product(c, of, of);
         };
-        const std::size_t first = c * stress_space.n_samples;
         add(of_step, steps.data());
-        add(of_all_steps, &state.time_error[first]);
-        add(of_change, changes.data());
+        add(of_all_steps, totals.data());
         if (is_measured)
-          add(of_rate, &end.rate->rate[first]);
+          add(of_rate, &end.rate->rate[c * stress_space.n_samples]);
       }
 
       /// Return the defect of the step in z or history at a sample, to leading
@@ -400,7 +398,7 @@ namespace Viscoplastic
       bool remembers = false, needs_stress = false, is_plain = false;
       std::vector<SymmetricTensor<2, 3>> strains;
       std::array<SymmetricTensor<2, 3>, GeometryInfo<dim>::vertices_per_cell>
-        steps, changes;
+        steps, totals; // errors by this step, and by all
       // Data of the present sample:
       SymmetricTensor<2, 3> stress, strain;
       LawPoint              point;
@@ -410,7 +408,6 @@ namespace Viscoplastic
       {
         of_step,
         of_all_steps,
-        of_change,
         of_rate,
         n_norms
       };

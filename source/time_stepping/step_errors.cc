@@ -28,41 +28,26 @@ namespace Viscoplastic
     {
       const State<dim>  &old = accepted.state, &state = end.state;
       const Forces<dim> &old_forces = accepted.forces, &forces = end.forces;
-      // |dz|^2 of bodies that do not flow, (dz, eps(du)), the number of points
-      // that change, and of all points.
-      std::vector<double>     sums(4, 0.);
-      const StressSpace<dim> &space = discretization.stress_space;
-      if (!discretization.scene().has_viscosity() && !state.z.empty())
-        {
-          std::vector<SymmetricTensor<2, 3>> change(space.n_samples);
-          for (std::size_t c = 0; c < space.n_cells(); ++c)
-            {
-              const auto *z = &state.z[c * space.n_samples];
-              for (unsigned int s = 0; s < space.n_samples; ++s)
-                change[s] = z[s] - old.z[c * space.n_samples + s];
-              sums[0] +=
-                space.complementary_product(c, change.data(), change.data());
-            }
-        }
+      // (dz, eps(du)), the number of points that change, and of all points.
+      std::vector<double> sums(3, 0.);
       if (forces.irreversible.size() > 0)
         {
           const double *u = forces.u.begin(), *old_u = old_forces.u.begin(),
                        *z     = forces.irreversible.begin(),
                        *old_z = old_forces.irreversible.begin();
           for (unsigned int i = 0; i < forces.u.locally_owned_size(); ++i)
-            sums[1] += (u[i] - old_u[i]) * (z[i] - old_z[i]);
+            sums[0] += (u[i] - old_u[i]) * (z[i] - old_z[i]);
         }
       for (unsigned int p = 0; p < state.contact.n_points(); ++p)
         if (const auto &point = discretization.face->layout().points[p];
             old.contact.holds(point, p) != state.contact.holds(point, p))
-          ++sums[2];
-      sums[3] = state.contact.n_points();
+          ++sums[1];
+      sums[2] = state.contact.n_points();
       Utilities::MPI::sum(sums, discretization.space.communicator, sums);
       // |sigma|^2 = a(u, u) + 2 (z, eps(u)) + |z|^2, of change and end.
       const ErrorEstimate &errors = end.errors;
       const double         strain = state.k * state.k * errors.velocity_square,
                    energy         = 2. * forces.strain_energy;
-      sums[0] += errors.irreversible_change * errors.irreversible_change;
       // Rounding may make differences and energies negative.
       const auto share = [](const double part, const double whole) {
         return whole > 0. ? std::sqrt(std::max(part, 0.) / whole) :
@@ -70,10 +55,12 @@ namespace Viscoplastic
       };
       // Points count twice, since dual solutions jump when they change.
       return std::max(share(strain, energy),
-                      share(strain + 2. * sums[1] + sums[0],
+                      share(strain + 2. * sums[0] +
+                              errors.irreversible_change *
+                                errors.irreversible_change,
                             energy + 2. * (forces.irreversible_work +
                                            forces.irreversible_energy))) +
-             (sums[3] > 0. ? 2. * sums[2] / sums[3] : 0.);
+             (sums[2] > 0. ? 2. * sums[1] / sums[2] : 0.);
     }
 
 
@@ -168,6 +155,16 @@ namespace Viscoplastic
           }
         return {};
       }
+    std::optional<double> growth;
+    {
+      // Fields for this estimate are gone before the new rate takes memory.
+      TimerOutput::Scope phase(timer, "estimate");
+      error_estimator->assess_change(discretization.stress_space,
+                                     accepted,
+                                     end);
+      growth = growth_since_estimate(accepted, end);
+      estimate_step(accepted, growth, step);
+    }
     if (scene.has_viscosity() && !end.rate)
       {
         TimerOutput::Scope phase(timer, "rate");
@@ -202,7 +199,6 @@ namespace Viscoplastic
                             time_defect(step.is_implicit ?
                                           TimeScheme::backward_euler :
                                           scene.parameters.time.scheme),
-                            step.report,
                             slip_defects ? &*slip_defects : nullptr,
                             begun,
                             missed_work,
@@ -211,8 +207,6 @@ namespace Viscoplastic
                             accepted,
                             old_rate,
                             end);
-    const std::optional<double> growth = growth_since_estimate(accepted, end);
-    estimate_step(accepted, growth, step);
     error_estimator->assess_space(accepted.errors, end);
     if (quantity_estimator)
       quantity_estimator->assess(solver_of_elasticity().bulk(),
@@ -224,7 +218,7 @@ namespace Viscoplastic
     StepErrors           errors;
     errors.change =
       std::max(state.k * std::sqrt(std::max(0., estimate.velocity_square)),
-               estimate.irreversible_change);
+               scene.has_viscosity() ? estimate.irreversible_change : 0.);
     // Errors of iterations in both states change G by up to r times as much, in
     // steps of any size. A change of the state that is below them counts as
     // none, and a large indicator in full, so that steps do not depend on how

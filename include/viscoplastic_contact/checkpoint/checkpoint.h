@@ -67,8 +67,8 @@ namespace Viscoplastic
     /// Whether each of the nodal_fields() is contained.
     std::array<bool, 5> has_nodal_field;
     bool                has_estimate;
-    /// Whether each of the sample_fields() is contained.
-    std::array<bool, 7> has_sample_field;
+    /// Whether each field of for_each_sample_field() is contained.
+    std::array<bool, n_sample_fields> has_sample_field;
   };
 
   /// The inverse of pack_fields(), on the same mesh. Sets nodal fields, contact

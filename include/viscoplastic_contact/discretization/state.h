@@ -25,9 +25,11 @@ namespace Viscoplastic
     IrreversibleStress z;
 
     /// At the samples of z, only with viscosity and an error estimate: the
-    /// leading term of the time discretization error of z so far, and the slope
-    /// of the rate that the second order needs (see ErrorEstimator).
-    IrreversibleStress time_error, rate_slope;
+    /// leading term of the time discretization error of z so far, in single
+    /// precision, and the slope of the rate that the second order needs (see
+    /// ErrorEstimator).
+    std::vector<SymmetricTensor<2, 3, float>> time_error;
+    IrreversibleStress                        rate_slope;
     /// With a quantity of interest other than a sum: the time error of z as the
     /// linearized equations carry it on from step to step, and that of u,
     /// Cartesian with ghosts, empty before the first step.
@@ -53,19 +55,22 @@ namespace Viscoplastic
 
 
 
-  /// The fields of a state that have values at the samples.
-  template <typename StateType>
-  auto
-  sample_fields(StateType &state)
+  /// Call act(field) for each of the n_sample_fields fields of a state that
+  /// have values at the samples; absent ones are empty.
+  template <typename StateType, typename Action>
+  void
+  for_each_sample_field(StateType &state, const Action &act)
   {
-    return std::array<decltype(&state.z), 7>{{&state.z,
-                                              &state.time_error,
-                                              &state.rate_slope,
-                                              &state.carried_error,
-                                              &state.history,
-                                              &state.history_error,
-                                              &state.history_slope}};
+    act(state.z);
+    act(state.time_error);
+    act(state.rate_slope);
+    act(state.carried_error);
+    act(state.history);
+    act(state.history_error);
+    act(state.history_slope);
   }
+
+  constexpr std::size_t n_sample_fields = 7;
 
 
 

@@ -135,8 +135,7 @@ namespace Viscoplastic
     double energy_norm = 0.;
     /// a(du_n, du_n).
     double velocity_square = 0.;
-    /// (int E^-1 dz : dz)^{1/2} of the change of z in the step; with viscosity
-    /// only.
+    /// (int E^-1 dz : dz)^{1/2} of the change of z in the step.
     double irreversible_change = 0.;
     /// The sum of k |G| over all steps, in the same norm; and the time in which
     /// the last |G| alone makes that sum.

@@ -72,8 +72,8 @@ namespace Viscoplastic
 
     explicit ErrorEstimator(const Scene<dim> &scene);
 
-    /// Return which of the sample_fields() of a state the scene has.
-    static std::array<bool, 7>
+    /// Return which fields of for_each_sample_field() the scene has.
+    static std::array<bool, n_sample_fields>
     has_sample_fields(const Scene<dim> &scene);
 
     /// Initialize the fields of time errors, and the estimate of a state that
@@ -106,9 +106,17 @@ namespace Viscoplastic
     double
     tolerance(const ErrorEstimate &accepted) const;
 
-    /// Set the fields of time errors at the end of a step, and the estimate
-    /// except for assess_space(). Forces, and with viscosity the rates of both
-    /// states, must be known. @p defect: of the scheme. @p slip_defects, @p
+    /// Set the parts of the estimate that do not need the rate at the end of a
+    /// step: the size of the solution, its change in the step and the error of
+    /// iterations. Forces must be known. Collective.
+    void
+    assess_change(const StressSpace<dim>    &stress_space,
+                  const EvaluatedState<dim> &accepted,
+                  EvaluatedState<dim>       &end) const;
+
+    /// Set the fields of time errors at the end of a step, and the other parts
+    /// of the estimate except for assess_space(). With viscosity the rates of
+    /// both states must be known. @p defect: of the scheme. @p slip_defects, @p
     /// slip_begun: of the step, if any; @p missed_work: by the error of
     /// friction bounds in it (ContactFace::missed_bounds()); @p swing:
     /// swing_of_data() of the step. @p is_fresh: whether data, and so G, may
@@ -116,7 +124,6 @@ namespace Viscoplastic
     void
     assess(const FlowLaws<dim>       &laws,
            const TimeDefect          &defect,
-           const ContactReport       &report,
            const SlipDefects         *slip_defects,
            const double               slip_begun,
            const double               missed_work,

@@ -5,6 +5,7 @@
 
 #include <viscoplastic_contact/error/local_cells.h>
 
+#include <bitset>
 #include <functional>
 #include <optional>
 #include <utility>
@@ -254,7 +255,7 @@ namespace Viscoplastic
     std::vector<std::array<unsigned int, n_vertices>> nodes;
     /// The vertices of owned cells on faces where the part ends, except for
     /// planes of symmetry, if the opposite vertex is not on such a face.
-    std::vector<std::vector<unsigned char>> ends;
+    std::vector<std::bitset<n_vertices>> ends;
     /// The cells that share one vertex and no more with an owned cell, where
     /// the mesh around the vertex is regular; invalid elsewhere.
     std::vector<std::array<unsigned int, n_vertices>> across;

@@ -370,10 +370,6 @@ namespace Viscoplastic
     /// T at these points, kept if it does not depend on time.
     mutable std::optional<std::vector<double>> temperatures;
 
-    /// sigma nu at all faces: kept, since allocating the array in each step
-    /// costs as much as filling it.
-    mutable std::vector<Tensor<1, dim>> traction_buffer;
-
     /// Subface shapes by cell shape, face and subface; for construction only.
     std::map<std::tuple<unsigned int, unsigned int, unsigned int>, unsigned int>
       subface_shape_of;

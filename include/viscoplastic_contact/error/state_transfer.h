@@ -75,13 +75,14 @@ namespace Viscoplastic
 
     /// Set the field @p z at the samples of the new cells that replace @p cell,
     /// from one field of pack(). @p new_cell: numbers by active cell index.
+    template <typename Field>
     void
     unpack_samples(const CellIterator              &cell,
                    const CellStatus                 status,
                    const SymmetricTensor<2, 3>     *values,
                    const StressSpace<dim>          &new_stress_space,
                    const std::vector<unsigned int> &new_cell,
-                   IrreversibleStress              &z) const;
+                   Field                           &z) const;
 
     parallel::distributed::Triangulation<dim> &triangulation;
     const unsigned int                         n_samples;
@@ -96,11 +97,11 @@ namespace Viscoplastic
     parallel::distributed::SolutionTransfer<dim, DistributedVector>
       field_transfer;
 
-    /// The indices of the sample_fields() that are present, and `stress' for
-    /// sigma_h with viscosity (if none: nothing else below), their old values,
-    /// the weights of samples, and numbers of owned cells by active cell index.
-    static constexpr unsigned int   stress = numbers::invalid_unsigned_int;
-    std::vector<unsigned int>       carried;
+    /// Which fields of for_each_sample_field() are present, and whether sigma_h
+    /// is, with viscosity; the old values of these (if none: nothing else
+    /// below), the weights of samples, and numbers of owned cells by active
+    /// cell index.
+    std::vector<bool>               is_carried;
     std::vector<IrreversibleStress> old_samples;
     std::vector<double>             old_weights;
     std::vector<unsigned int>       old_cell;

@@ -170,14 +170,15 @@ namespace Viscoplastic
                     const Node               begin,
                     const Node               end)
     {
-      std::vector<unsigned int> result(A.columns.size());
-      LocalNumbers              number(owned_nodes, begin, end);
+      std::vector<unsigned int> result(A.columns.size()), number(end - begin);
+      for (unsigned int i = 0; i < owned_nodes.size(); ++i)
+        number[owned_nodes[i] - begin] = i;
       for (std::size_t e = 0; e < result.size(); ++e)
         {
           const Node node = A.columns[e];
           result[e] =
             node >= begin && node < end ?
-              number(node) :
+              number[node - begin] :
               owned_nodes.size() +
                 (std::lower_bound(ghosts.begin(), ghosts.end(), node) -
                  ghosts.begin());
@@ -220,6 +221,15 @@ namespace Viscoplastic
           act(e, p);
     };
 
+    // Away from cells that the finer mesh has refined, rows of A are those of
+    // the product: all their nodes interpolate themselves alone.
+    const auto is_itself = [&](const unsigned int row, const Node node) {
+      const std::size_t first = P.begin[row];
+      return P.begin[row + 1] == first + 1 && P.parents[first].node == node &&
+             P.parents[first].weight == 1.;
+    };
+    std::vector<bool> is_row_of_A(coarse.size(), false);
+
     // Make the sparsity pattern, coarse row by coarse row.
     std::vector<std::size_t>                   row_begin(1, 0);
     std::vector<unsigned int>                  columns;
@@ -227,6 +237,22 @@ namespace Viscoplastic
     std::vector<std::pair<Node, unsigned int>> in_order;
     for (unsigned int I = 0; I < coarse.size(); ++I)
       {
+        const unsigned int i = children.begin[I + 1] - children.begin[I] == 1 ?
+                                 children.entries[children.begin[I]] :
+                                 none;
+        bool               is_copy = i != none && is_itself(i, coarse[I]);
+        for (std::size_t e = is_copy ? A.begin[i] : 0;
+             is_copy && e < A.begin[i + 1];
+             ++e)
+          is_copy = is_itself(fine_column[e], A.columns[e]);
+        if (is_copy)
+          {
+            is_row_of_A[I] = true;
+            for (std::size_t e = A.begin[i]; e < A.begin[i + 1]; ++e)
+              columns.push_back(parents[P.begin[fine_column[e]]]);
+            row_begin.push_back(columns.size());
+            continue;
+          }
         in_order.clear();
         for (std::size_t c = children.begin[I]; c < children.begin[I + 1]; ++c)
           for_each_product(children.entries[c],
@@ -249,6 +275,14 @@ namespace Viscoplastic
     std::vector<NodeBlock<dim>> sums;
     for (unsigned int i = 0; i < A.n_rows(); ++i)
       {
+        if (P.begin[i + 1] - P.begin[i] == 1 &&
+            is_row_of_A[parents[P.begin[i]]])
+          {
+            std::copy(A.values.begin() + A.begin[i],
+                      A.values.begin() + A.begin[i + 1],
+                      values.begin() + row_begin[parents[P.begin[i]]]);
+            continue;
+          }
         touched.clear();
         sums.clear();
         for_each_product(i, [&](const std::size_t e, const std::size_t p) {

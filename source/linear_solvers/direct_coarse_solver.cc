@@ -39,6 +39,12 @@ namespace Viscoplastic
            level.global_number(level.local_number(rows.columns[e])),
            rows.values[e]});
     matrix = gather(entries, communicator);
+    DynamicSparsityPattern entries_of_matrix(n_nodes * dim);
+    for (const Entry &entry : matrix)
+      for (unsigned int i = 0; i < dim; ++i)
+        for (unsigned int j = 0; j < dim; ++j)
+          entries_of_matrix.add(entry.row * dim + i, entry.column * dim + j);
+    pattern.copy_from(entries_of_matrix);
   }
 
 
@@ -61,14 +67,7 @@ namespace Viscoplastic
         spring[mask.node] = mask.spring;
       }
 
-    DynamicSparsityPattern pattern(n_nodes * dim);
-    for (const Entry &entry : matrix)
-      for (unsigned int i = 0; i < dim; ++i)
-        for (unsigned int j = 0; j < dim; ++j)
-          pattern.add(entry.row * dim + i, entry.column * dim + j);
-    result.matrix.clear();
-    result.pattern.copy_from(pattern);
-    result.matrix.reinit(result.pattern);
+    result.matrix.reinit(pattern);
     for (const Entry &entry : matrix)
       {
         const Tensor<2, dim> block =

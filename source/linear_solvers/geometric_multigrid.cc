@@ -17,17 +17,6 @@ namespace Viscoplastic
 
 
   template <int dim>
-  struct GeometricMultigrid<dim>::Level
-  {
-    /// Owned nodes of the level, ascending.
-    std::vector<Node>                    nodes;
-    Interpolation                        interpolation; // from below
-    std::unique_ptr<MultigridLevel<dim>> space;
-  };
-
-
-
-  template <int dim>
   GeometricMultigrid<dim>::GeometricMultigrid(
     const DistributedMatrix              &matrix,
     const std::vector<bool>              &excluded,
@@ -60,14 +49,8 @@ namespace Viscoplastic
            n_unknowns + n_new[first_mesh + 1] <= options.coarse_size)
       n_unknowns += n_new[++first_mesh];
 
-    for (unsigned int mesh = first_mesh; mesh < hierarchy.n_levels; ++mesh)
-      {
-        levels.push_back(std::make_unique<Level>());
-        for (std::size_t n = 0; n < hierarchy.first_level.size(); ++n)
-          if (hierarchy.first_level[n] <= mesh)
-            levels.back()->nodes.push_back(hierarchy.begin + n);
-      }
-    const std::vector<Node> &nodes = levels.back()->nodes;
+    levels.resize(hierarchy.n_levels - first_mesh);
+    const std::vector<Node> nodes = nodes_of(levels.size() - 1);
     for (unsigned int i = 0; i < nodes.size() && !hierarchy.frames.empty(); ++i)
       {
         const auto frame = hierarchy.frames.find(nodes[i]);
@@ -77,11 +60,6 @@ namespace Viscoplastic
     coarse_modes = on_first_level(rigid_body_modes);
     fill();
   }
-
-
-
-  template <int dim>
-  GeometricMultigrid<dim>::~GeometricMultigrid() = default;
 
 
 
@@ -107,31 +85,46 @@ namespace Viscoplastic
 
 
   template <int dim>
+  std::vector<NodeHierarchy::Node>
+  GeometricMultigrid<dim>::nodes_of(const unsigned int level) const
+  {
+    std::vector<Node> result;
+    for (std::size_t n = 0; n < hierarchy.first_level.size(); ++n)
+      if (hierarchy.first_level[n] <= first_mesh + level)
+        result.push_back(hierarchy.begin + n);
+    return result;
+  }
+
+
+
+  template <int dim>
   void
   GeometricMultigrid<dim>::fill()
   {
-    const bool is_new = levels[0]->space == nullptr;
     // Scaling by a power of two is exact.
     double largest = 0.;
     for (std::size_t i = 0; i < excluded.size(); ++i)
       largest = std::max(largest, matrix.diagonal(i));
     unit =
       std::ldexp(1., std::ilogb(Utilities::MPI::max(largest, communicator)));
-    BlockRows<dim> rows = cartesian_rows<dim>(
-      matrix, excluded, hierarchy, levels.back()->nodes, unit);
+    std::vector<Node> nodes = nodes_of(levels.size() - 1);
+    BlockRows<dim>    rows =
+      cartesian_rows<dim>(matrix, excluded, hierarchy, nodes, unit);
     LevelInterpolations interpolations(hierarchy, begins, communicator);
-    std::vector<Node>   others; // that the interpolation above needs
+    Interpolation       upper;  // from the present level to the one above
+    std::vector<Node>   others; // that it needs
     for (unsigned int l = levels.size(); l-- > 0;)
       {
-        Level     &level      = *levels[l];
         const auto is_foreign = [this](const Node node) {
           return node < hierarchy.begin || node >= hierarchy.end;
         };
-        if (!is_new)
-          level.space->set_values(rows);
+        if (levels[l])
+          levels[l]->set_values(rows);
         else
-          level.space = std::make_unique<MultigridLevel<dim>>(
-            rows, level.nodes, others, begins, communicator);
+          levels[l] = std::make_unique<MultigridLevel<dim>>(
+            rows, nodes, others, begins, communicator);
+        if (l + 1 < levels.size())
+          levels[l + 1]->set_interpolation(upper, *levels[l]);
         if (l == 0)
           break;
         std::set<Node> ghosts;
@@ -140,38 +133,25 @@ namespace Viscoplastic
             if (is_foreign(node))
               ghosts.insert(node);
         const std::vector<Node> ghost_list(ghosts.begin(), ghosts.end());
-        if (is_new)
-          level.interpolation =
-            interpolations.next(first_mesh + l, level.nodes, ghost_list);
+        // Those of all levels would take much memory until the next filling.
+        upper = interpolations.next(first_mesh + l, nodes, ghost_list);
         others.clear();
-        for (std::size_t e = 0;
-             e < level.interpolation.begin[level.nodes.size()];
-             ++e)
-          if (is_foreign(level.interpolation.parents[e].node))
-            others.push_back(level.interpolation.parents[e].node);
-        rows = galerkin_product(rows,
-                                level.nodes,
-                                ghost_list,
-                                level.interpolation,
-                                levels[l - 1]->nodes,
-                                begins,
-                                communicator);
+        for (std::size_t e = 0; e < upper.begin[nodes.size()]; ++e)
+          if (is_foreign(upper.parents[e].node))
+            others.push_back(upper.parents[e].node);
+        std::vector<Node> coarse_nodes = nodes_of(l - 1);
+        rows                           = galerkin_product(
+          rows, nodes, ghost_list, upper, coarse_nodes, begins, communicator);
+        nodes = std::move(coarse_nodes);
       }
-    for (unsigned int l = 1; l < levels.size(); ++l)
-      levels[l]->space->set_interpolation(levels[l]->interpolation,
-                                          *levels[l - 1]->space);
-
-    std::vector<MultigridLevel<dim> *> spaces;
-    for (const auto &level : levels)
-      spaces.push_back(level->space.get());
-    masks.set_levels(spaces);
+    masks.set_levels(levels);
     if (has_direct_coarse_solver)
       coarse = std::make_unique<DirectCoarseSolver<dim>>(rows,
-                                                         *spaces[0],
+                                                         *levels[0],
                                                          communicator);
     else
       coarse = std::make_unique<AlgebraicCoarseSolver<dim>>(rows,
-                                                            *spaces[0],
+                                                            *levels[0],
                                                             coarse_modes,
                                                             communicator);
     built_for.reset();
@@ -185,9 +165,10 @@ namespace Viscoplastic
   GeometricMultigrid<dim>::on_first_level(
     const std::vector<DistributedVector> &modes) const
   {
-    std::vector<double> result;
+    std::vector<double>     result;
+    const std::vector<Node> nodes = nodes_of(0);
     for (const DistributedVector &mode : modes)
-      for (const Node node : levels[0]->nodes)
+      for (const Node node : nodes)
         {
           const double *const value =
             mode.begin() + (node - hierarchy.begin) * dim;
@@ -231,8 +212,8 @@ namespace Viscoplastic
   void
   GeometricMultigrid<dim>::cycle(const unsigned int l) const
   {
-    const Level &level = *levels[l];
-    auto        &x = level.space->x, &b = level.space->b, &r = level.space->r;
+    const MultigridLevel<dim> &level = *levels[l];
+    auto                      &x = level.x, &b = level.b, &r = level.r;
     if (l == 0)
       masks.project(l, b);
     if (l == 0 && coarse->is_exact())
@@ -241,20 +222,20 @@ namespace Viscoplastic
         masks.project(l, x);
         return;
       }
-    level.space->smooth_forward_from_zero(x, b);
-    level.space->residual(r, x, b);
+    level.smooth_forward_from_zero(x, b);
+    level.residual(r, x, b);
     masks.project(l, r);
     if (l == 0)
       coarse->solve(masks.in_use(), r, r);
     else
       {
-        level.space->restrict_to_coarse(levels[l - 1]->space->b, r);
+        level.restrict_to_coarse(levels[l - 1]->b, r);
         cycle(l - 1);
-        level.space->interpolate(r, levels[l - 1]->space->x);
+        level.interpolate(r, levels[l - 1]->x);
       }
     masks.project(l, r);
     x.add(1.f, r);
-    level.space->smooth_backward(x, b);
+    level.smooth_backward(x, b);
   }
 
 
@@ -269,14 +250,15 @@ namespace Viscoplastic
     y                 = 0.;
     if (!(size > 0.) || !std::isfinite(size))
       return;
-    const double scale = std::ldexp(1., -std::ilogb(size));
-    const Level &fine  = *levels.back();
-    float *const b     = fine.space->b.begin();
-    float *const u     = fine.space->x.begin();
-    for (unsigned int i = 0; i < fine.nodes.size(); ++i)
+    const double               scale = std::ldexp(1., -std::ilogb(size));
+    const MultigridLevel<dim> &fine  = *levels.back();
+    const std::vector<Node>   &nodes = fine.owned_nodes();
+    float *const               b     = fine.b.begin();
+    float *const               u     = fine.x.begin();
+    for (unsigned int i = 0; i < nodes.size(); ++i)
       {
         const double *const from =
-          x.begin() + (fine.nodes[i] - hierarchy.begin) * dim;
+          x.begin() + (nodes[i] - hierarchy.begin) * dim;
         for (unsigned int d = 0; d < dim; ++d)
           b[i * dim + d] = scale * from[d];
       }
@@ -285,9 +267,9 @@ namespace Viscoplastic
     cycle(levels.size() - 1);
     for (const auto &[i, directions] : rotated_nodes)
       multiply(transpose(directions), u + i * dim);
-    for (unsigned int i = 0; i < fine.nodes.size(); ++i)
+    for (unsigned int i = 0; i < nodes.size(); ++i)
       {
-        double *const to = y.begin() + (fine.nodes[i] - hierarchy.begin) * dim;
+        double *const to = y.begin() + (nodes[i] - hierarchy.begin) * dim;
         for (unsigned int d = 0; d < dim; ++d)
           to[d] = u[i * dim + d] / (scale * unit);
       }

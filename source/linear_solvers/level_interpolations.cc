@@ -34,11 +34,17 @@ namespace Viscoplastic
       result.begin.push_back(result.parents.size());
     };
     for (const Node node : nodes)
-      add(row(node));
+      if (others.empty() &&
+          hierarchy.first_level[node - hierarchy.begin] < mesh)
+        {
+          result.parents.push_back({node, 1.}); // as row() says
+          result.begin.push_back(result.parents.size());
+        }
+      else
+        add(row(node));
     if (begins.size() > 2)
       for (const auto &parents : ask_owners(ghosts, begins, communicator, row))
         add(parents);
-    result.parents.shrink_to_fit();
     return result;
   }
 

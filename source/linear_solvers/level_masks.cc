@@ -96,17 +96,18 @@ namespace Viscoplastic
 
   template <int dim>
   void
-  LevelMasks<dim>::set_levels(const std::vector<MultigridLevel<dim> *> &spaces)
+  LevelMasks<dim>::set_levels(
+    const std::vector<std::unique_ptr<MultigridLevel<dim>>> &spaces)
   {
     std::map<Node, unsigned int> face_node;
     for (unsigned int f = 0; f < face_nodes.size(); ++f)
       face_node[face_nodes[f].node] = f;
     levels.clear();
     used.reset();
-    for (MultigridLevel<dim> *const space : spaces)
+    for (const auto &space : spaces)
       {
         Level level;
-        level.space = space;
+        level.space = space.get();
         for (unsigned int i = 0; i < space->owned_nodes().size(); ++i)
           {
             const Node node = space->owned_nodes()[i];

@@ -15,10 +15,9 @@ namespace Viscoplastic
   {
     using Node = NodeHierarchy::Node;
 
-    /// Binary digits by which blocks are compared: of their largest entry, and
-    /// of that of the row, below which entries are rounding.
-    constexpr int digits_of_block = 22;
-    constexpr int digits_of_row   = 46;
+    /// The precision by which blocks are compared: relative to their largest
+    /// entry, and to that of the row, below which entries are rounding.
+    constexpr double of_block = 0x1p-22, of_row = 0x1p-46;
 
 
 
@@ -89,14 +88,29 @@ namespace Viscoplastic
 
 
 
-    /// Round to multiples of 2^exponent, at least 2^-51 of the entries.
+    /// Return the largest power of two up to a positive number, without the
+    /// function calls of std::ilogb() and std::ldexp().
+    double
+    power_of_two(double x)
+    {
+      std::uint64_t bits;
+      std::memcpy(&bits, &x, sizeof(x));
+      bits &= ~std::uint64_t(0) << 52;
+      std::memcpy(&x, &bits, sizeof(x));
+      return x;
+    }
+
+
+
+    /// Round to multiples of @p unit, a power of two, at least 2^-51 of the
+    /// entries.
     template <int dim>
     NodeBlock<dim>
-    rounded(const NodeBlock<dim> &block, const int exponent)
+    rounded(const NodeBlock<dim> &block, const double unit)
     {
-      // Numbers near this one are multiples of 2^exponent. (std::nearbyint is a
+      // Numbers near this one are multiples of the unit. (std::nearbyint is a
       // function call per entry unless the processor is known to round.)
-      const double   large = std::ldexp(3., exponent + 51);
+      const double   large = 0x1.8p52 * unit;
       NodeBlock<dim> result;
       for (unsigned int i = 0; i < dim; ++i)
         for (unsigned int j = 0; j < dim; ++j)
@@ -129,7 +143,6 @@ namespace Viscoplastic
     };
     std::vector<Neighbor> neighbors;
     std::vector<Block>    blocks;
-    std::vector<double>   sizes;
     // The distinct rows so far, by hash of their values.
     std::unordered_multimap<std::size_t, unsigned int> known;
     for (unsigned int i = 0; i < matrix.n_rows(); ++i)
@@ -137,14 +150,9 @@ namespace Viscoplastic
         const std::size_t begin   = matrix.begin[i];
         const std::size_t end     = matrix.begin[i + 1];
         double            largest = 0.;
-        sizes.clear();
         for (std::size_t e = begin; e < end; ++e)
-          {
-            sizes.push_back(largest_entry<dim>(matrix.values[e]));
-            largest = std::max(largest, sizes.back());
-          }
-        const int least_exponent =
-          largest > 0. ? std::ilogb(largest) - digits_of_row : 0;
+          largest = std::max(largest, largest_entry<dim>(matrix.values[e]));
+        const double   least = power_of_two(largest) * of_row;
         NodeBlock<dim> sum;
         neighbors.clear();
         blocks.clear();
@@ -154,12 +162,11 @@ namespace Viscoplastic
             sum += matrix.values[e];
             if (column == i)
               continue;
-            const double size = sizes[e - begin];
+            const double size = largest_entry<dim>(matrix.values[e]);
             blocks.push_back(packed<dim>(
               size > 0. ?
                 rounded<dim>(matrix.values[e],
-                             std::max(std::ilogb(size) - digits_of_block,
-                                      least_exponent)) :
+                             std::max(power_of_two(size) * of_block, least)) :
                 NodeBlock<dim>()));
             neighbors.push_back({column > i,
                                  key(blocks.back()),

@@ -84,4 +84,74 @@ namespace
         x += correction;
       }
   }
+
+
+
+  TYPED_TEST(Smoother, ProductWithInterpolationsKeepsRowsThatItDoesNotChange)
+  {
+    // A row of nodes on each rank, the second one of which lies between the
+    // first and the third: the nodes from the fourth on are coupled with coarse
+    // nodes only.
+    constexpr int                    dim     = TypeParam::value;
+    const unsigned int               n_nodes = 7, middle = 1;
+    std::vector<NodeHierarchy::Node> begins, nodes, coarse;
+    const unsigned int rank = Utilities::MPI::this_mpi_process(MPI_COMM_WORLD);
+    for (unsigned int r = 0;
+         r <= Utilities::MPI::n_mpi_processes(MPI_COMM_WORLD);
+         ++r)
+      begins.push_back(n_nodes * r);
+    BlockRows<dim>                   A;
+    Interpolation                    P;
+    const NodeHierarchy::Node        first = begins[rank];
+    std::vector<std::vector<double>> weights(n_nodes,
+                                             std::vector<double>(n_nodes));
+    const auto block = [](const unsigned int i, const unsigned int j) {
+      NodeBlock<dim> result;
+      for (unsigned int c = 0; c < dim && std::max(i, j) <= std::min(i, j) + 1;
+           ++c)
+        for (unsigned int d = 0; d < dim; ++d)
+          result[c][d] = 1. + i + 3. * j + 0.5 * c + 0.25 * d;
+      return result;
+    };
+    for (unsigned int i = 0; i < n_nodes; ++i)
+      {
+        nodes.push_back(first + i);
+        for (unsigned int j = i == 0 ? 0 : i - 1; j < std::min(i + 2, n_nodes);
+             ++j)
+          {
+            A.columns.push_back(first + j);
+            A.values.push_back(block(i, j));
+          }
+        A.begin.push_back(A.columns.size());
+        if (i == middle)
+          {
+            P.parents.push_back({first + i - 1, 0.5});
+            P.parents.push_back({first + i + 1, 0.5});
+            weights[i][i - 1] = weights[i][i + 1] = 0.5;
+          }
+        else
+          {
+            coarse.push_back(first + i);
+            P.parents.push_back({first + i, 1.});
+            weights[i][i] = 1.;
+          }
+        P.begin.push_back(P.parents.size());
+      }
+    const BlockRows<dim> product =
+      galerkin_product(A, nodes, {}, P, coarse, begins, MPI_COMM_WORLD);
+    ASSERT_EQ(product.n_rows(), coarse.size());
+    for (unsigned int row = 0; row < coarse.size(); ++row)
+      for (const auto column : coarse)
+        {
+          NodeBlock<dim> expected, found;
+          for (unsigned int i = 0; i < n_nodes; ++i)
+            for (unsigned int j = 0; j < n_nodes; ++j)
+              expected += weights[i][coarse[row] - first] * block(i, j) *
+                          weights[j][column - first];
+          for (auto e = product.begin[row]; e < product.begin[row + 1]; ++e)
+            if (product.columns[e] == column)
+              found = product.values[e];
+          EXPECT_EQ(found, expected) << coarse[row] << ", " << column;
+        }
+  }
 } // namespace

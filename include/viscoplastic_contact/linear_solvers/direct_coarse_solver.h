@@ -65,7 +65,6 @@ namespace Viscoplastic
     struct Factor
     {
       std::vector<Mask>                    masks;
-      SparsityPattern                      pattern;
       SparseMatrix<double>                 matrix;
       std::unique_ptr<SparseDirectUMFPACK> factor;
     };
@@ -74,6 +73,7 @@ namespace Viscoplastic
     const MPI_Comm             communicator;
     const NodeHierarchy::Node  n_nodes;
     std::vector<Entry>         matrix;
+    SparsityPattern            pattern;
     std::array<Factor, 2>      factors; // by masking
   };
 } // namespace Viscoplastic

@@ -45,7 +45,6 @@ namespace Viscoplastic
                        const std::vector<DistributedVector> &rigid_body_modes,
                        const FaceRestriction                &restriction,
                        const Options                        &options);
-    ~GeometricMultigrid() override;
 
     std::string
     name() const override;
@@ -72,7 +71,9 @@ namespace Viscoplastic
     restore(const std::optional<PreconditionerState> &state) override;
 
   private:
-    struct Level;
+    /// Return the owned nodes of a level, ascending.
+    std::vector<NodeHierarchy::Node>
+    nodes_of(const unsigned int level) const;
 
     /// Set all levels to the values of the present matrix.
     void
@@ -107,7 +108,7 @@ namespace Viscoplastic
     unsigned int first_mesh = 0;
     /// Nodes of the last level whose frames are rotated, and their directions.
     std::vector<std::pair<unsigned int, Tensor<2, dim>>> rotated_nodes;
-    std::vector<std::unique_ptr<Level>>                  levels;
+    std::vector<std::unique_ptr<MultigridLevel<dim>>>    levels;
     LevelMasks<dim>                                      masks;
     const bool                         has_direct_coarse_solver;
     std::vector<double>                coarse_modes;

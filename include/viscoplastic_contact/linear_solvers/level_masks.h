@@ -84,7 +84,7 @@ namespace Viscoplastic
     /// Use these levels with new matrix values, coarsest first, and set the
     /// inverse diagonal blocks of nodes off the face. Discards all masks.
     void
-    set_levels(const std::vector<MultigridLevel<dim> *> &levels);
+    set_levels(const std::vector<std::unique_ptr<MultigridLevel<dim>>> &levels);
 
     /// Make the masks of all levels for @p truncation, or of the excluded
     /// degrees of freedom alone if it is null. @p unit: the stiffness by which

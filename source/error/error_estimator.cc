@@ -163,19 +163,13 @@ namespace Viscoplastic
     const double      k        = end.state.k;
     DistributedVector velocity = space.owned_vector();
     space.to_frames(accepted.state.velocity, velocity);
-    const bool    has_z = forces.irreversible.size() > 0;
-    const double *u = forces.u.begin(), *old_u = old_forces.u.begin(),
-                 *v = velocity.begin(), *internal = forces.internal.begin(),
-                 *old_internal = old_forces.internal.begin(),
-                 *z            = has_z ? forces.irreversible.begin() : nullptr,
-                 *old_z = has_z ? old_forces.irreversible.begin() : nullptr;
+    const DistributedVector elastic     = forces.elastic(),
+                            old_elastic = old_forces.elastic();
     for (unsigned int i = 0; i < velocity.locally_owned_size(); ++i)
       {
-        double change = internal[i] - old_internal[i];
-        if (has_z)
-          change = (internal[i] - z[i]) - (old_internal[i] - old_z[i]);
-        products[0] += change * (u[i] - old_u[i]);
-        products[1] += change * v[i];
+        const double change = elastic.begin()[i] - old_elastic.begin()[i];
+        products[0] += change * (forces.u.begin()[i] - old_forces.u.begin()[i]);
+        products[1] += change * velocity.begin()[i];
       }
     Utilities::MPI::sum(products, space.communicator, products);
     estimate.irreversible_change = std::sqrt(products[2]);

@@ -90,8 +90,8 @@ namespace
   TYPED_TEST(Smoother, ProductWithInterpolationsKeepsRowsThatItDoesNotChange)
   {
     // A row of nodes on each rank, the second one of which lies between the
-    // first and the third: the nodes from the fourth on are coupled with coarse
-    // nodes only.
+    // first and the third. The fourth is coupled with it, those behind are with
+    // coarse nodes only.
     constexpr int                    dim     = TypeParam::value;
     const unsigned int               n_nodes = 7, middle = 1;
     std::vector<NodeHierarchy::Node> begins, nodes, coarse;
@@ -107,7 +107,7 @@ namespace
                                              std::vector<double>(n_nodes));
     const auto block = [](const unsigned int i, const unsigned int j) {
       NodeBlock<dim> result;
-      for (unsigned int c = 0; c < dim && std::max(i, j) <= std::min(i, j) + 1;
+      for (unsigned int c = 0; c < dim && std::max(i, j) <= std::min(i, j) + 2;
            ++c)
         for (unsigned int d = 0; d < dim; ++d)
           result[c][d] = 1. + i + 3. * j + 0.5 * c + 0.25 * d;
@@ -116,7 +116,7 @@ namespace
     for (unsigned int i = 0; i < n_nodes; ++i)
       {
         nodes.push_back(first + i);
-        for (unsigned int j = i == 0 ? 0 : i - 1; j < std::min(i + 2, n_nodes);
+        for (unsigned int j = i < 2 ? 0 : i - 2; j < std::min(i + 3, n_nodes);
              ++j)
           {
             A.columns.push_back(first + j);

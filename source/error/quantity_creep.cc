@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <viscoplastic_contact/error/quantity_estimator.h>
+#include <viscoplastic_contact/laws/backward_euler.h>
 
 // The error of a quantity by creep: products with the dual solution of one step
 // as long as the creep time.
@@ -137,16 +138,32 @@ namespace Viscoplastic
         const Stiffness            &stiffness = stress_space.moduli(c);
         const SymmetricTensor<2, 3> stress =
                                       stiffness.stress(strain) + state.z[i],
+                                    of_law = now.mechanical(strain, c, s),
+                                    z      = stress - stiffness.stress(of_law),
                                     change = tangent->at_samples()[i] * e,
-                                    of_law = now.mechanical(strain, c, s);
-        const LawPoint point               = now.point(c, s);
-        // C e = E e + k dG to first order.
-        return change - stiffness.stress(e) -
-               k * (flow->step_rate(
-                      stress + change, of_law + e, k, stiffness, point) -
-                    (is_rate_known && flow->n_history_variables == 0 ?
-                       rate.rate[i] :
-                       flow->step_rate(stress, of_law, k, stiffness, point)));
+                                    flow_change = change - stiffness.stress(e);
+        const LawPoint              point       = now.point(c, s);
+        const SymmetricTensor<2, 3> rate_now =
+          is_rate_known && flow->n_history_variables == 0 ?
+            rate.rate[i] :
+            flow->step_rate(stress, of_law, k, stiffness, point);
+        // A correction by Newton's method would not do: from where nothing
+        // flows it goes far beyond a yield surface.
+        try
+          {
+            return z + flow_change -
+                   implicit_irreversible_stress(*flow,
+                                                of_law + e,
+                                                z - k * rate_now,
+                                                k,
+                                                stiffness,
+                                                point,
+                                                z + flow_change);
+          }
+        catch (const ExceptionBase &)
+          {
+            return SymmetricTensor<2, 3>(); // no such stress, as in softening
+          }
       };
     Vector<double> products =
       space_estimator.multiply_recovered(state,

@@ -37,7 +37,7 @@ namespace Viscoplastic
                   dual.dilatation[i] * C(unit_symmetric_tensor<3>());
               }
             if (!dual.strain.empty())
-              dual.strain[i] = stiffness.strain(C(eps[q]));
+              dual.strain[i] = eps[q];
           }
       }
   }

@@ -20,6 +20,7 @@ from runs import (
 
 # What cell means leave out of the history is known without its sign only.
 POINTS = {"Material/Stress history": "quadrature points"}
+WORK = "friction_dissipation"
 # Of runs that others are compared with nobody asks for it, a third of their time.
 NO_BAR = {"Error control/Error bar": "false"}
 COARSE_SLAB = {
@@ -100,8 +101,6 @@ def fine_slab(law, **more):
 
 class Estimated(TestCase):
     """Signs and sizes of the errors on a given mesh."""
-
-    WORK = "friction_dissipation"
 
     def check(self, coarse, fine, column, band, safety=2):
         """The correction, over the times of the coarse run, against the error."""
@@ -342,10 +341,10 @@ class Estimated(TestCase):
             ("turns", slide(cube, "zener", "0.1*t; 0.03*t^2", **hanging), 3),
         ):
             with self.subTest(name):
-                coarse = run("slide", of(self.WORK, **scene), ranks, text="")
+                coarse = run("slide", of(WORK, **scene), ranks, text="")
                 fine = {**scene, **NO_BAR, "Geometry/Global refinements": 2}
-                fine = run("slide", fine, text="")[self.WORK][-1]
-                error = abs(fine - coarse[self.WORK][-1])
+                fine = run("slide", fine, text="")[WORK][-1]
+                error = abs(fine - coarse[WORK][-1])
                 quotient = coarse["quantity_space"][-1] / 2 / error
                 self.assertGreater(quotient, 0.65)
                 self.assertLess(quotient, 1.5)
@@ -534,14 +533,21 @@ class Kept(TestCase):
             self.check("friction_dissipation", 0.01, law)
 
     def test_work_under_computed_pressure(self):
-        scene = slide("6, 3 : 0, 0 : 2, 1 : true", "norton")
-        result = run("slide", of("friction_dissipation", 0.01, **scene), text="")
-        fine = {"Geometry/Global refinements": 2, "Time/Phases": "1: 40, 10: 90"}
-        fine = run("slide", {**scene, **fine, **NO_BAR, "Time/Scheme": "Heun"}, text="")
-        exact = fine["friction_dissipation"][-1]
-        # measured: 0.2 %; 2 % when past slip did not feel the pressure
-        self.assertClose(result["friction_dissipation"][-1], exact, 0.01)
-        self.assertIn("has been kept", result.stdout)
+        perzyna = of_law("perzyna", Yield_radius=0.01, Viscosity=0.3)
+        # measured: 0.3 and 1.0 %, 66 and 234 cells; of norton 2 % when past slip did
+        # not feel the pressure, of perzyna 8667 cells when errors of strain were
+        # expected to lead far beyond the yield surface
+        for law, tolerance, cells in (("norton", 0.01, 150), ("perzyna", 0.03, 600)):
+            with self.subTest(law):
+                scene = slide("6, 3 : 0, 0 : 2, 1 : true", law, **perzyna)
+                scene["Material/Law"] = law
+                result = run("slide", of(WORK, tolerance, **scene), text="")
+                fine = {"Geometry/Global refinements": 2, "Time/Phases": "1: 40, 10: 90"}
+                fine = {**scene, **fine, **NO_BAR, "Time/Scheme": "Heun"}
+                exact = run("slide", fine, text="")[WORK][-1]
+                self.assertClose(result[WORK][-1], exact, tolerance)
+                self.assertLess(result["cells"].max(), cells)
+                self.assertIn("has been kept", result.stdout)
 
     def test_slip_that_comes_to_rest_in_a_step(self):
         """A load that slackens while the bound grows, the same at all points:

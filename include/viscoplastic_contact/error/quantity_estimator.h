@@ -32,7 +32,7 @@ namespace Viscoplastic
   ///   solution w_h of the dual problem of C, so that
   ///
   ///       |J(u) - J(u_h)| = |int (S(eps(u)) - S(eps(u_h))) : eps(w_h)|
-  ///                       = |int (e_u : C e_w - r(-e_u) : C eps(w_h))|
+  ///                       = |int (e_u : C e_w - r(-e_u) : eps(w_h))|
   ///
   ///   with the remainder r of RecoveryEstimator::multiply(); displacements of
   ///   points likewise. The larger of this and of a(e_u, e_w) counts. T is the

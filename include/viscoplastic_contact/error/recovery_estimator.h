@@ -46,7 +46,7 @@ namespace Viscoplastic
       /// delta_w/3 and C I delta_w/3; empty without mean dilatation.
       std::vector<double>                dilatation;
       std::vector<SymmetricTensor<2, 3>> of_dilatation;
-      /// E^-1 C eps(w_h); empty if the law is linear.
+      /// eps(w_h); empty if the law is linear.
       std::vector<SymmetricTensor<2, 3>> strain;
       /// By part: the boundary vertices (`ends') at which eps* of w_h is
       /// curved, and those at which neither strain is extrapolated.
@@ -59,8 +59,8 @@ namespace Viscoplastic
       /// The ratio of the step to the creep time, and so of its deviatoric
       /// strain to that of the body. At most 1.
       double share;
-      /// E r, the difference of a stress error C e at a sample of a cell and E
-      /// e plus the flow due to it; empty if the law is linear.
+      /// The remainder r of a strain error e at a sample of a cell: C e minus
+      /// the change of stress by the law; empty if the law is linear.
       std::function<SymmetricTensor<2, 3>(const std::size_t            cell,
                                           const unsigned int           sample,
                                           const SymmetricTensor<2, 3> &strain,
@@ -83,7 +83,7 @@ namespace Viscoplastic
     /// arguments and the result as of estimate(). Data of w are kept in @p
     /// dual, initially empty.
     ///
-    ///     int e_u : C e_w - int r(-e_u) : C eps(w_h)
+    ///     int e_u : C e_w - int r(-e_u) : eps(w_h)
     ///
     /// Since u_h solves the nonlinear equations instead of their linearization,
     /// its error is a-orthogonal to w_h only up to the remainder r of the law,

@@ -8,10 +8,11 @@ namespace Viscoplastic
   bool
   ContactLayout::has_plain_friction(const unsigned int node) const
   {
-    if (friction_points(node).size() != 1)
+    const Range here = obstacles(node);
+    if (*here.begin() - first_point[node] != 1)
       return false;
     const Point &friction = points[first_point[node]];
-    for (const unsigned int o : obstacles(node))
+    for (const unsigned int o : here)
       for (unsigned int i = 0; i < friction.n_tangents; ++i)
         if (friction.map[i] * points[o].map[0] != 0.)
           return false;

@@ -16,7 +16,7 @@ namespace Viscoplastic
 
   namespace
   {
-    const std::string first_line = first_words_of_manifests + "14";
+    const std::string first_line = first_words_of_manifests + "15";
   }
 
 

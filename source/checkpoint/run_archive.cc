@@ -41,8 +41,8 @@ namespace Viscoplastic
     {
       EvaluatedState<dim> &accepted = run.accepted;
       State<dim>          &state    = accepted.state;
-      archive &state.n &state.t &state.k &accepted.is_solution &accepted
-        .has_slip_rate;
+      archive &state.n &state.t &state.k &state.time_error_unit &accepted
+        .is_solution &accepted.has_slip_rate;
       archive &accepted.space_estimate.total &accepted.space_estimate
         .rate_defect;
       ContactReport &report = accepted.report;

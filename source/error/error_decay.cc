@@ -121,7 +121,7 @@ namespace Viscoplastic
             const ErrorRelaxation &relaxation =
               decay.relaxation_at(i, stress, strain, point);
             SymmetricTensor<2, 3>      &error = state.carried_error[i];
-            const SymmetricTensor<2, 3> moves(state.time_error[i]);
+            const SymmetricTensor<2, 3> moves = state.time_error_at(i);
             const auto                  add_square = [&](const unsigned int           sum,
                                         const SymmetricTensor<2, 3> &value) {
               sums[sum] +=

@@ -285,8 +285,7 @@ namespace Viscoplastic
               }
           }
         for (std::size_t i = 0; i < strains.size(); ++i)
-          error -= (is_sum ? SymmetricTensor<2, 3>(state.time_error[i]) :
-                             state.carried_error[i]) *
+          error -= (is_sum ? state.time_error_at(i) : state.carried_error[i]) *
                    strains[i];
         error = Utilities::MPI::sum(error, d.space.communicator);
       }

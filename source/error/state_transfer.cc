@@ -48,6 +48,7 @@ namespace Viscoplastic
     , n(state.n)
     , t(state.t)
     , k(state.k)
+    , time_error_unit(state.time_error_unit)
   {
     std::vector<const DistributedVector *> present;
     for (const DistributedVector &field : old_fields)
@@ -222,9 +223,10 @@ namespace Viscoplastic
     const AdmissibleSpace<dim> &space = new_stress_space.space;
 
     Result result;
-    result.state.n = n;
-    result.state.t = t;
-    result.state.k = k;
+    result.state.n               = n;
+    result.state.t               = t;
+    result.state.k               = k;
+    result.state.time_error_unit = time_error_unit;
 
     const std::array<DistributedVector *, 6> targets{
       {&result.state.u,

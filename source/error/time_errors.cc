@@ -172,6 +172,16 @@ namespace Viscoplastic
       add()
       {
         state.time_error.resize(state.z.size());
+        double largest = 0.;
+        for (std::size_t i = 0; i < state.z.size(); ++i)
+          for (unsigned int e = 0; e < 6; ++e)
+            largest =
+              std::max({largest,
+                        std::fabs(state.z[i].access_raw_entry(e)),
+                        k * std::fabs(end.rate->rate[i].access_raw_entry(e))});
+        largest = Utilities::MPI::max(largest, stress_space.space.communicator);
+        state.time_error_unit =
+          largest > 0. ? std::ldexp(1., std::ilogb(largest)) : 1.;
         state.rate_slope    = accepted.rate_slope;
         state.carried_error = accepted.carried_error;
         state.history_error = accepted.history_error;
@@ -229,7 +239,7 @@ namespace Viscoplastic
         if (!half_way.empty())
           all -= k / 3. *
                  (accepted_rate.rate[i] + end.rate->rate[i] - 2. * half_way[i]);
-        totals[s] = SymmetricTensor<2, 3>(accepted.time_error[i]);
+        totals[s] = accepted.time_error_at(i);
         if (is_plain)
           {
             totals[s] += all;
@@ -238,7 +248,7 @@ namespace Viscoplastic
           }
         else
           all = what_counts(c, s, i, all);
-        state.time_error[i] = totals[s];
+        state.time_error[i] = totals[s] / state.time_error_unit;
         // Without an earlier slope, step control assumes zero.
         if (!has_slope)
           all +=

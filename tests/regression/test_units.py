@@ -580,10 +580,12 @@ class OtherUnits(TestCase):
             scale = max(scale, np.prod(np.power(sizes, powers)))
             for name in names:
                 here = finite[name]
+                # The time error is kept in single precision.
+                of_time = name.split("_")[-1] in ("time", "total")
                 self.assertClose(
                     result[name][here] / scaled.power(powers),
                     known[name][here],
-                    absolute=1e-9 * scale,
+                    absolute=(1e-7 if of_time else 1e-9) * scale,
                     what=name,
                 )
 

@@ -26,9 +26,11 @@ namespace Viscoplastic
 
     /// At the samples of z, only with viscosity and an error estimate: the
     /// leading term of the time discretization error of z so far, in single
-    /// precision, and the slope of the rate that the second order needs (see
-    /// ErrorEstimator).
+    /// precision and units of time_error_unit, a power of two near the largest
+    /// z or its change in a step; and the slope of the rate that the second
+    /// order needs (see ErrorEstimator).
     std::vector<SymmetricTensor<2, 3, float>> time_error;
+    double                                    time_error_unit = 1.;
     IrreversibleStress                        rate_slope;
     /// With a quantity of interest other than a sum: the time error of z as the
     /// linearized equations carry it on from step to step, and that of u,
@@ -51,6 +53,13 @@ namespace Viscoplastic
     /// Gamma_3 in the place of their first component, with ghosts. Empty unless
     /// the scene asks for it, and before the first step.
     DistributedVector friction_work;
+
+    /// The time error of z at sample i.
+    SymmetricTensor<2, 3>
+    time_error_at(const std::size_t i) const
+    {
+      return time_error_unit * SymmetricTensor<2, 3>(time_error[i]);
+    }
   };
 
 

@@ -114,7 +114,7 @@ namespace Viscoplastic
     mutable double        of_refined_cells = 0.;
 
     unsigned int n;
-    double       t, k;
+    double       t, k, time_error_unit;
   };
 
 

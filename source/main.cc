@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <deal.II/base/mpi.h>
 
+#include <viscoplastic_contact/base/console.h>
 #include <viscoplastic_contact/base/expression.h>
 #include <viscoplastic_contact/base/messages.h>
 #include <viscoplastic_contact/base/mpi_singleton.h>
-#include <viscoplastic_contact/base/progress.h>
 #include <viscoplastic_contact/base/signals.h>
 #include <viscoplastic_contact/parameters/parameter_description.h>
 #include <viscoplastic_contact/run/command_line.h>
@@ -98,11 +98,10 @@ namespace
   std::string
   run(const CommandLine &command_line)
   {
-    Console         console(MPI_COMM_WORLD,
+    Console console(MPI_COMM_WORLD,
                     command_line.quiet,
                     command_line.log,
                     command_line.verbose);
-    const Heartbeat heartbeat(console);
     try
       {
         const std::string interruption = run(command_line, console);

@@ -28,21 +28,14 @@ namespace Viscoplastic
 
 
 
-  Console::~Console()
+  void
+  Console::remark(const std::string &sentence)
   {
-    everywhere.flush();
-  }
-
-
-
-  bool
-  Console::is_silent_for(const double seconds) const
-  {
-    const Clock::time_point now = Clock::now();
-    return now - last_text > std::max<Clock::duration>(
-                               std::chrono::duration_cast<Clock::duration>(
-                                 std::chrono::duration<double>(seconds)),
-                               (now - beginning) / 100);
+    if (std::find(all_remarks.begin(), all_remarks.end(), sentence) !=
+        all_remarks.end())
+      return;
+    all_remarks.push_back(sentence);
+    everywhere << sentence << std::endl;
   }
 
 
@@ -67,8 +60,6 @@ namespace Viscoplastic
   {
     const std::string text = str();
     str("");
-    if (!text.empty())
-      console.last_text = Clock::now();
     if (console.speaks && !text.empty())
       std::cout << text << std::flush;
     if (console.log_file.is_open())

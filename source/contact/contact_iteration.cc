@@ -2,7 +2,6 @@
 #include <deal.II/base/timer.h>
 #include <deal.II/base/utilities.h>
 
-#include <viscoplastic_contact/base/progress.h>
 #include <viscoplastic_contact/contact/contact_iteration.h>
 #include <viscoplastic_contact/contact/kink_search.h>
 
@@ -114,7 +113,6 @@ namespace Viscoplastic
   {
     for (unsigned int iteration = 0;; ++iteration)
       {
-        Heartbeat::count(Loop::contact);
         relax(sweeps_of_iteration(iteration));
         if (is_solved())
           break;

@@ -3,7 +3,6 @@
 #include <deal.II/lac/solver_cg.h>
 #include <deal.II/lac/solver_gmres.h>
 
-#include <viscoplastic_contact/base/progress.h>
 #include <viscoplastic_contact/linear_solvers/krylov_solver.h>
 #include <viscoplastic_contact/linear_solvers/residual_rounding.h>
 
@@ -211,7 +210,6 @@ namespace Viscoplastic
     void
     vmult(DistributedVector &y, const DistributedVector &x) const
     {
-      Heartbeat::count(Loop::linear);
       if (is_truncated && solve.truncation.transposed)
         {
           DistributedVector motion(x);

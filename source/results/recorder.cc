@@ -22,7 +22,7 @@ namespace Viscoplastic
     , timer(timer)
     , budget(budget)
     , has_error_estimate(scene.parameters.error_control.error_estimator)
-    , progress(console, scene.schedule.n_steps(), scene.unit(Quantity::time))
+    , progress(console)
   {
     if (has_error_estimate)
       run.errors.emplace();
@@ -223,47 +223,50 @@ namespace Viscoplastic
 
 
   template <int dim>
+  double
+  Recorder<dim>::done(const unsigned int n, const double t) const
+  {
+    return control.may_reject() ?
+             t / scene.schedule.end_time() :
+             static_cast<double>(n) / scene.schedule.n_steps();
+  }
+
+
+
+  template <int dim>
   void
   Recorder<dim>::report_progress(const AcceptedStep<dim>   &step,
                                  const StepQuantities<dim> &quantities)
   {
-    const TimeStep &time_step = step.time_step;
-    StepProgress    present{time_step.n,
-                         time_step.t,
-                         time_step.k,
-                         static_cast<double>(
-                           discretization->space.dof_handler.get_triangulation()
-                             .n_global_active_cells())};
+    const auto &[n, t_old, t, k] = step.time_step;
+    if (n == 0)
+      return;
+    const std::string time_unit = scene.unit(Quantity::time);
+    const auto n_cells = discretization->space.dof_handler.get_triangulation()
+                           .n_global_active_cells();
+    std::ostringstream words;
+    words << "Step " << n;
+    if (!control.may_reject())
+      words << '/' << scene.schedule.n_steps();
+    words << "  t = " << number(t, 5) << time_unit << "  k = " << number(k, 3)
+          << time_unit << "  cells " << n_cells;
     if (discretization->face)
       {
         const FrictionIdentities &friction = quantities.friction;
-        const double area          = friction.slip_area + friction.stick_area;
-        present.contact_iterations = step.report.iterations;
+        const double area = friction.slip_area + friction.stick_area;
+        words << "  contact iterations " << step.report.iterations;
         if (area > 0.)
-          present.slipping = friction.slip_area / area;
-        if (friction.max_slip > 0.)
-          present.slip_rate = number(friction.max_slip / time_step.k, 2) +
-                              scene.unit(Quantity::velocity);
+          words << "  slipping "
+                << std::lround(100. * friction.slip_area / area) << " %";
+        if (area > 0. && friction.max_slip > 0.)
+          words << " at " << number(friction.max_slip / k, 2)
+                << scene.unit(Quantity::velocity);
       }
     if (scene.is_adaptive() && !has_error_estimate)
-      present.error_estimate = quantities.refinement_estimate;
-    present.relative_error = relative_error(step.end.errors);
-    if (control.may_reject())
-      {
-        if (time_step.n > 0)
-          expected_step.add_step(time_step.k);
-        present.done = time_step.t / scene.schedule.end_time();
-        // Implicit steps report 2/r, but are not limited by it.
-        const double limit = step.is_implicit ?
-                               std::numeric_limits<double>::infinity() :
-                               step.step_limit;
-        if (!control.is_on || expected_step.is_known() || *present.done >= 1.)
-          present.expected_steps = control.expected_steps(time_step.n,
-                                                          time_step.t,
-                                                          expected_step.size(),
-                                                          limit);
-      }
-    progress.report(present, elapsed());
+      words << "  error estimate " << number(quantities.refinement_estimate, 3);
+    if (const auto relative = relative_error(step.end.errors))
+      words << "  error estimate " << number(100. * *relative, 2) << " %";
+    progress.report(words.str(), n_cells, done(n, t), elapsed());
   }
 
 
@@ -273,14 +276,7 @@ namespace Viscoplastic
   Recorder<dim>::resume(const State<dim> &state, const double seconds_before)
   {
     earlier_seconds = seconds_before;
-    // The progress counts from the resumed state.
-    progress.report({0,
-                     state.t,
-                     state.k,
-                     static_cast<double>(
-                       discretization->space.dof_handler.get_triangulation()
-                         .n_global_active_cells())},
-                    elapsed());
+    progress.resume(done(state.n, state.t), elapsed());
   }
 
 

@@ -7,6 +7,7 @@
 #include <viscoplastic_contact/error/known_solution.h>
 #include <viscoplastic_contact/error/solution_errors.h>
 #include <viscoplastic_contact/mesh/mesh.h>
+#include <viscoplastic_contact/mesh/mesh_size.h>
 #include <viscoplastic_contact/results/recorder.h>
 #include <viscoplastic_contact/run/plausibility.h>
 #include <viscoplastic_contact/run/scene_check.h>
@@ -75,10 +76,12 @@ namespace Viscoplastic
 
     /// Evaluate the data at later times: at ends of phases and about a hundred
     /// times between them, which include the ends of steps if there are fewer.
+    /// Return the largest overlap of bodies and foundations in contact.
     template <int dim>
-    void
+    double
     check_later_data(const Discretization<dim> &discretization)
     {
+      double              overlap   = 0.;
       const TimeSchedule &schedule  = discretization.scene().schedule;
       const unsigned int  per_phase = std::max(1u, 100u / schedule.n_phases());
       DistributedVector   u         = discretization.space.owned_vector();
@@ -99,6 +102,9 @@ namespace Viscoplastic
                 {
                   // Only friction coefficients: the state has no pressures.
                   std::vector<double> bounds = discretization.face->bounds(t);
+                  for (const unsigned int o :
+                       discretization.face->layout().obstacles())
+                    overlap = std::max(overlap, -bounds[o]);
                   discretization.face->add_computed_bounds(t,
                                                            ContactState(),
                                                            bounds);
@@ -107,6 +113,7 @@ namespace Viscoplastic
               t_old = t;
             }
         }
+      return Utilities::MPI::max(overlap, discretization.space.communicator);
     }
 
 
@@ -293,9 +300,7 @@ namespace Viscoplastic
     // This throws if output points, lines or integrals are wrong.
     Recorder<dim>(scene, control, console, timer, budget ? &*budget : nullptr)
       .set_mesh(d);
-    const LargestStress largest_stress = largest_given_stress(d);
-    describe_materials(d, largest_stress, out);
-    for (const std::string &doubt : implausible_data(d, largest_stress))
+    for (const std::string &doubt : implausible_data(d, out))
       console.remark("Warning: " + doubt);
 
     KnownSolution<dim>(scene, timer).check();
@@ -311,7 +316,13 @@ namespace Viscoplastic
         check_steps(d, control, console, initial);
       }
     announce_stability_limit(d, initial.state, out);
-    check_later_data(d);
+    const double overlap = check_later_data(d),
+                 size    = body_diagonal(triangulation);
+    if (overlap > 0.05 * size)
+      console.remark("Warning: bodies and foundations in contact overlap by " +
+                     number(overlap) + scene.unit(Quantity::length) + ", " +
+                     number(std::round(100. * overlap / size)) +
+                     " % of the size of all; small strains are assumed.");
     print_size(d, out);
     out << "The scene is valid"
         << (console.remarks().empty() ? "." : ", with the remarks above.")

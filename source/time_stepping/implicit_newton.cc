@@ -2,7 +2,6 @@
 #include <deal.II/base/mpi.h>
 
 #include <viscoplastic_contact/base/messages.h>
-#include <viscoplastic_contact/base/progress.h>
 #include <viscoplastic_contact/base/types.h>
 #include <viscoplastic_contact/discretization/flow_laws.h>
 #include <viscoplastic_contact/time_stepping/implicit_step.h>
@@ -210,7 +209,6 @@ namespace Viscoplastic
     bool is_outdated = true;
     for (solution.newton_iterations = 1;; ++solution.newton_iterations)
       {
-        Heartbeat::count(Loop::newton);
         if (is_outdated)
           method.linearize(at, z, laws, step.k);
         const bool tangent_is_new = is_outdated;

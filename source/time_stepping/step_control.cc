@@ -55,9 +55,6 @@ namespace Viscoplastic
     /// whole time, so that errors of solvers do not change them, a difference
     /// that would grow from step to step.
     constexpr double n_sizes_per_octave = 16.;
-    /// A limit for the change of the logarithm of the allowed step size: larger
-    /// jumps say nothing about later steps.
-    constexpr double most_telling_growth = 0.3;
     constexpr double infinity = std::numeric_limits<double>::infinity();
     /// More stable steps than this up to a time of the phases are refused,
     /// since the scene is stiff.
@@ -300,24 +297,13 @@ namespace Viscoplastic
 
 
   double
-  StepControl::growth_allowed_by(const double ratio, const double k)
+  StepControl::growth_allowed_by(const double ratio)
   {
-    present.allowed = infinity;
     if (!(ratio > 0.))
       return largest_growth;
     const double measured = std::max(ratio, least_ratio);
     const double best     = std::pow(aim / measured, 1. / order);
-    present.allowed       = best * k;
-    if (before.allowed > 0. && before.allowed < infinity)
-      {
-        const double growth =
-          std::clamp(std::log(present.allowed / before.allowed),
-                     -most_telling_growth,
-                     most_telling_growth);
-        present.growth_weight = 0.9 * before.growth_weight + 1.;
-        present.growth += (growth - before.growth) / present.growth_weight;
-      }
-    double factor = std::pow(aim / measured, 0.3 / order);
+    double       factor   = std::pow(aim / measured, 0.3 / order);
     if (before.last_ratio > 0.)
       factor *= std::pow(before.last_ratio / measured, 0.4 / order);
     if (best >= 1. && best < least_change)
@@ -390,7 +376,7 @@ namespace Viscoplastic
     present.unsigned_sum = before.unsigned_sum + errors.indicator;
     if (is_repeated)
       return true;
-    double factor = growth_allowed_by(ratio, step.k);
+    double factor = growth_allowed_by(ratio);
     // Steps do not grow before an event, and grow quickly after it.
     if (has_event)
       present.event_before = 0.;
@@ -436,54 +422,4 @@ namespace Viscoplastic
     return true;
   }
 
-
-
-  double
-  StepControl::expected_steps(const unsigned int n,
-                              const double       t,
-                              const double       k,
-                              const double       limit) const
-  {
-    if (t >= schedule.end_time() || k <= 0.)
-      return n;
-    double steps = n;
-    for (double from = t; from < schedule.end_time();)
-      {
-        const auto &phase      = schedule.phase_at(from);
-        const bool  is_present = from == t;
-        double      left       = phase.end - from,
-               size            = is_present ? k : phase.step_size();
-        from                   = phase.end;
-        if (!is_on)
-          {
-            // Steps of the phase, divided as the last one was.
-            steps += std::round(left / std::min(k, phase.step_size()));
-            continue;
-          }
-        double     most        = largest(phase.start);
-        const bool has_a_limit = needs_limit() && limit < infinity;
-        if (has_a_limit)
-          most = std::min(most, limit);
-        if (output_interval > 0.)
-          most = std::min(most, output_interval);
-        size                 = std::min(size, most);
-        const double allowed = std::clamp(present.allowed, size, most);
-        for (; size < allowed && left > size; ++steps)
-          {
-            left -= size;
-            size = std::min(largest_growth * size, allowed);
-          }
-        // Steps k, k e^g, k e^2g, ... add up to what is left. With a limit,
-        // growth is too small to tell it from chance.
-        const double growth  = is_present && !has_a_limit ?
-                                 std::max(0., present.growth) :
-                                 0.,
-                     equal   = left / size,
-                     growing = growth > 1e-3 ?
-                                 std::log1p(growth * equal) / growth :
-                                 equal;
-        steps += std::ceil(std::max(left / most, growing) * (1. - 1e-10));
-      }
-    return steps;
-  }
 } // namespace Viscoplastic

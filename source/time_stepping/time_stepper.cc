@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <viscoplastic_contact/base/messages.h>
-#include <viscoplastic_contact/base/progress.h>
 #include <viscoplastic_contact/time_stepping/time_stepper.h>
 
 namespace Viscoplastic
@@ -108,7 +107,6 @@ namespace Viscoplastic
     for (unsigned int n_rejections = 0;; ++n_rejections)
       {
         const TimeStep time_step = control.propose(state.n, state.t, limit);
-        Heartbeat::begin_step(time_step.n, time_step.t);
         try
           {
             AcceptedStep<dim> step   = try_step(accepted, rate, time_step);

@@ -271,7 +271,7 @@ class Check(Manners):
         foundation that comes far into the body."""
         for name, value, code, sentence in (
             ("Friction coefficient", "0.2*sin(2*t)", 1, "0), t = 1.58; it must not be"),
-            ("Gap", "-0.5*t", 0, "boundary 2 overlaps the foundation by 1, 45 % of"),
+            ("Gap", "-0.5*t", 0, "foundations in contact overlap by 1, 45 % of"),
         ):
             entries = {
                 "Contact law": "unilateral",
@@ -326,21 +326,16 @@ class Voice(Manners):
         self.assertEqual(steps, ["1", "2", "3", "4"])
 
     def test_long_runs_do_not_flood(self):
-        """At most some 200 lines for 1000 steps; the last step is among them, and
-        what is left out is counted."""
+        """Some 200 lines for 1000 steps; the last step is among them."""
         arguments = (*SMALL, "--set", "Time/Phases=1: 1000",
                      "--set", "Output/Fields every=0")
         text = self.call(SLAB, *arguments).stdout
         lines = [line for line in text.splitlines() if line.startswith("Step ")]
-        self.assertTrue(200 <= len(lines) <= 204, len(lines))
-        left_out = re.findall(r"  \((\d+) steps? left out\)$", text, re.M)
-        self.assertEqual(len(lines) + sum(map(int, left_out)), 1000)
+        self.assertEqual(len(lines), 201)
         self.assertIn("1000/1000", lines[-1])
         self.assertEqual(len(self.column(self.work / "output/slab", "t")), 1001)
 
-    def test_steps_to_come_where_they_are_chosen(self):
-        """From the sizes that steps have had, not from a short one to a time that
-        has to be met, here the end and the middle of phases."""
+    def test_time_left_where_steps_are_chosen(self):
         text = self.call(
             SLAB,
             *SMALL,
@@ -348,18 +343,12 @@ class Voice(Manners):
             *("--set", "Step control/Tolerance=1e-2"),
             *("--set", "Step control/Landing times=0.3001, 0.7, 0.7001, 1.5, 1.5001"),
         ).stdout
-        lines = re.findall(r"^Step +(\d+)/~(\d+)  t = (\S+) .*  left \d", text, re.M)
-        # The first ones know nothing of their growth.
-        first = re.findall(r"^Step (\d+)  t = ", text, re.M)
-        self.assertIn(first, (["1", "2"], ["1", "2", "3"]))
-        self.assertLessEqual(int(lines[0][0]), 4)
+        lines = re.findall(r"^Step (\d+)  t = .*  left (\S+ \S+)$", text, re.M)
         n_steps = int(re.search(r"^Steps: (\d+) accepted", text, re.M).group(1))
-        self.assertEqual(lines[-1][:2], (str(n_steps), str(n_steps)))
-        self.assertGreater(len(lines), 20)
-        for n, expected, t in lines:
-            self.assertLess(int(expected), 1.5 * n_steps, f"step {n}, t = {t}")
-            # That slip is to come nobody knows before it begins.
-            self.assertGreater(int(expected), n_steps / 3, f"step {n}, t = {t}")
+        steps = [int(n) for n, _ in lines]
+        self.assertEqual(steps, sorted(set(steps)))
+        self.assertGreater(len(steps), 20)
+        self.assertEqual((steps[0], steps[-1], lines[-1][1]), (1, n_steps, "0 s"))
 
     def test_all_steps_of_a_verbose_run(self):
         process = self.call(

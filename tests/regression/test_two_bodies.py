@@ -906,7 +906,7 @@ class Refused(TestCase):
             overlap = {"Boundary 3/Gap": gap, "Initial state/Equilibrate": "true"}
             with Job("two_blocks_2d", overlap) as job:
                 words = " ".join(job.run("--check").stdout.split())
-            sentence = "boundary 3 overlaps the other body by 0.3, 13 % of the size"
+            sentence = "foundations in contact overlap by 0.3, 13 % of the size"
             (self.assertIn if is_told else self.assertNotIn)(sentence, words)
 
     def test_sentences(self):

@@ -3,8 +3,6 @@
 
 #include <deal.II/base/mpi.h>
 
-#include <algorithm>
-#include <chrono>
 #include <fstream>
 #include <sstream>
 #include <string>
@@ -21,13 +19,16 @@ namespace Viscoplastic
   public:
     /// Open @p log_file for writing unless the name is empty; throws ExcMessage
     /// if that fails. @p quiet suppresses the standard output, but not the log.
-    /// @p verbose turns off all abbreviations of the output.
+    /// @p verbose asks for repetitive output in full.
     explicit Console(const MPI_Comm     communicator = MPI_COMM_WORLD,
                      const bool         quiet        = false,
                      const std::string &log_file     = "",
                      const bool         verbose      = false);
 
-    ~Console();
+    ~Console()
+    {
+      everywhere.flush();
+    }
 
     Console(const Console &) = delete;
     Console &
@@ -41,49 +42,23 @@ namespace Viscoplastic
       return everywhere;
     }
 
+    /// Return the stream of the log alone.
     std::ostream &
     log()
     {
       return everywhere.flush(), log_file;
     }
 
-    /// Return whether also repetitive output is wanted in full.
     bool
     is_verbose() const
     {
       return verbose;
     }
 
-    /// Return whether the output of this rank goes anywhere.
-    bool
-    is_heard() const
-    {
-      return speaks || log_file.is_open();
-    }
-
-    /// Return the seconds since the construction of this object.
-    double
-    age() const
-    {
-      return std::chrono::duration<double>(Clock::now() - beginning).count();
-    }
-
-    /// Return whether there has been no output for @p seconds, or for a
-    /// hundredth of the age() if that is longer, to limit output.
-    bool
-    is_silent_for(const double seconds) const;
-
-    /// Print a sentence that the user should see, and keep it in remarks().
+    /// Print a sentence that the user should see, unless it has been printed
+    /// before, and keep it in remarks().
     void
-    remark(const std::string &sentence)
-    {
-      // Repeated passes over the input may give the same remark.
-      if (std::find(all_remarks.begin(), all_remarks.end(), sentence) !=
-          all_remarks.end())
-        return;
-      all_remarks.push_back(sentence);
-      everywhere << sentence << std::endl;
-    }
+    remark(const std::string &sentence);
 
     /// Return the different sentences given to remark(), in order.
     const std::vector<std::string> &
@@ -111,16 +86,11 @@ namespace Viscoplastic
       Console &console;
     };
 
-    using Clock = std::chrono::steady_clock;
-
-    const bool               speaks;
-    const bool               verbose;
+    const bool               speaks, verbose;
     const std::string        log_name;
     std::ofstream            log_file;
     Buffer                   buffer;
     std::ostream             everywhere;
-    const Clock::time_point  beginning = Clock::now();
-    Clock::time_point        last_text = beginning;
     std::vector<std::string> all_remarks;
   };
 } // namespace Viscoplastic

@@ -189,6 +189,10 @@ namespace Viscoplastic
     void
     add_seconds(StatisticsRow &row);
 
+    /// The part of the run that has been made after step n, which ends at t.
+    double
+    done(const unsigned int n, const double t) const;
+
     void
     report_progress(const AcceptedStep<dim>   &step,
                     const StepQuantities<dim> &quantities);
@@ -246,9 +250,8 @@ namespace Viscoplastic
     /// without friction; see ContactReport.
     double solve_seconds = 0., plain_solve_seconds = 0.;
     /// Seconds of the run before its last restart, and of its pilot run.
-    double       earlier_seconds = 0., pilot_seconds = 0.;
-    ExpectedStep expected_step;
-    Timer        clock;
+    double earlier_seconds = 0., pilot_seconds = 0.;
+    Timer  clock;
   };
 
 

@@ -210,17 +210,6 @@ namespace Viscoplastic
     bool
     retries(const TimeStep &step, const bool for_stability);
 
-    /// Estimate the number of steps of the run after @p n steps to @p t, the
-    /// last ones of size @p k. Adaptive steps grow from k to the size that the
-    /// last error allows, at most to @p limit, 2/r of an explicit scheme;
-    /// without one they go on to grow at the recent rate, as in a relaxation.
-    /// Later phases begin with their own step size.
-    double
-    expected_steps(const unsigned int n,
-                   const double       t,
-                   const double       k,
-                   const double       limit) const;
-
     /// Whether t is the start, a kink of the data, a phase end or a landing
     /// time, after which slip may end at once without being an event.
     bool
@@ -281,11 +270,6 @@ namespace Viscoplastic
       double event_before = 0.;
       /// The sum of the indicators of all steps.
       double unsigned_sum = 0.;
-      /// The step size that the error of the last accepted step would have
-      /// allowed, and the logarithm of its growth from step to step: a mean
-      /// with weights that halve in about seven steps, and their sum. Not
-      /// archived: resumed runs start anew.
-      double allowed = 0., growth = 0., growth_weight = 0.;
     };
 
     double
@@ -298,11 +282,10 @@ namespace Viscoplastic
                   const StepErrors &errors,
                   const double      size) const;
 
-    /// The factor by which the next step may be longer than an accepted one of
-    /// size k, whose error is @p ratio times the allowed one. Updates
-    /// `present`.
+    /// The factor by which the next step may be longer than an accepted one
+    /// whose error is @p ratio times the allowed one. Updates `present`.
     double
-    growth_allowed_by(const double ratio, const double k);
+    growth_allowed_by(const double ratio);
 
     double
     smallest(const double t) const

@@ -585,7 +585,7 @@ class OtherUnits(TestCase):
                 self.assertClose(
                     result[name][here] / scaled.power(powers),
                     known[name][here],
-                    absolute=(1e-7 if of_time else 1e-9) * scale,
+                    absolute=(1e-8 if of_time else 1e-9) * scale,
                     what=name,
                 )
 

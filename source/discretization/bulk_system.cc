@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <deal.II/grid/cell_id.h>
 #include <deal.II/grid/tria_iterator.h>
+#include <deal.II/lac/la_parallel_vector.h>
 
 #include <viscoplastic_contact/discretization/bulk_system.h>
 #include <viscoplastic_contact/mesh/mesh_refinement.h>
@@ -162,8 +163,8 @@ namespace Viscoplastic
 
 
 
-    /// Return the origin of each owned node, and set the first levels of
-    /// independent nodes; hanging nodes have a nonzero level on entry.
+    /// Return the origin of each owned node, and set the levels of refinement
+    /// of independent nodes; hanging nodes have a nonzero level on entry.
     template <int dim>
     std::vector<Origin<dim>>
     find_origins(const VertexNodes<dim>   &nodes,
@@ -191,6 +192,47 @@ namespace Viscoplastic
                     ((c >> d) & 1U) + ((v >> d) & 1U);
               }
       return origins;
+    }
+
+
+
+    /// Replace levels of refinement by spaces that are coarsened everywhere at
+    /// once: each leaves out all nodes of the next finer one on which no other
+    /// node there depends. Collective.
+    void
+    coarsen_everywhere(const MPI_Comm communicator, NodeHierarchy &hierarchy)
+    {
+      IndexSet owned(hierarchy.end_of_mesh), others(hierarchy.end_of_mesh);
+      owned.add_range(hierarchy.begin, hierarchy.end);
+      std::vector<Node> foreign;
+      for (const auto &parent : hierarchy.parents)
+        if (!owned.is_element(parent.node))
+          foreign.push_back(parent.node);
+      std::sort(foreign.begin(), foreign.end());
+      others.add_indices(foreign.begin(), foreign.end());
+      // Spaces are counted from the finest one down here.
+      LinearAlgebra::distributed::Vector<double> last_space(owned,
+                                                            others,
+                                                            communicator);
+      const unsigned int finest = hierarchy.n_levels - 1;
+      for (unsigned int level = finest; level > 0; --level)
+        {
+          for (std::size_t n = 0; n < hierarchy.first_level.size(); ++n)
+            if (hierarchy.first_level[n] == level)
+              for (std::size_t e = hierarchy.row_begin[n];
+                   e < hierarchy.row_begin[n + 1];
+                   ++e)
+                {
+                  double &of_parent = last_space(hierarchy.parents[e].node);
+                  of_parent =
+                    std::max(of_parent, last_space.local_element(n) + 1.);
+                }
+          last_space.compress(VectorOperation::max);
+        }
+      for (std::size_t n = 0; n < hierarchy.first_level.size(); ++n)
+        if (hierarchy.first_level[n] > 0 && hierarchy.first_level[n] <= finest)
+          hierarchy.first_level[n] =
+            finest - static_cast<unsigned int>(last_space.local_element(n));
     }
   } // namespace
 
@@ -266,6 +308,7 @@ namespace Viscoplastic
         hierarchy.row_begin.push_back(hierarchy.parents.size());
       }
     hierarchy.parents.shrink_to_fit();
+    coarsen_everywhere(space.communicator, hierarchy);
     hierarchy.has_interfaces = !space.mortar_rows.empty();
     for (const auto &of_boundary : space.mortar_rows)
       for (const auto &[node, row] : of_boundary.second)

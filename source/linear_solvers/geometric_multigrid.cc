@@ -38,18 +38,18 @@ namespace Viscoplastic
                                     Node(hierarchy.first_level.size())))
       begins.push_back(begins.back() + n_owned);
 
-    // The first level is the finest mesh of at most coarse_size unknowns.
+    // The first level is the finest space of at most coarse_size unknowns.
     std::vector<Node> n_new(hierarchy.n_levels, 0);
-    for (const unsigned int mesh : hierarchy.first_level)
-      if (mesh < hierarchy.n_levels)
-        n_new[mesh] += dim;
+    for (const unsigned int space : hierarchy.first_level)
+      if (space < hierarchy.n_levels)
+        n_new[space] += dim;
     Utilities::MPI::sum(n_new, communicator, n_new);
     Node n_unknowns = n_new[0];
-    while (first_mesh + 1 < hierarchy.n_levels &&
-           n_unknowns + n_new[first_mesh + 1] <= options.coarse_size)
-      n_unknowns += n_new[++first_mesh];
+    while (first_space + 1 < hierarchy.n_levels &&
+           n_unknowns + n_new[first_space + 1] <= options.coarse_size)
+      n_unknowns += n_new[++first_space];
 
-    levels.resize(hierarchy.n_levels - first_mesh);
+    levels.resize(hierarchy.n_levels - first_space);
     const std::vector<Node> nodes = nodes_of(levels.size() - 1);
     for (unsigned int i = 0; i < nodes.size() && !hierarchy.frames.empty(); ++i)
       {
@@ -90,7 +90,7 @@ namespace Viscoplastic
   {
     std::vector<Node> result;
     for (std::size_t n = 0; n < hierarchy.first_level.size(); ++n)
-      if (hierarchy.first_level[n] <= first_mesh + level)
+      if (hierarchy.first_level[n] <= first_space + level)
         result.push_back(hierarchy.begin + n);
     return result;
   }
@@ -134,7 +134,7 @@ namespace Viscoplastic
               ghosts.insert(node);
         const std::vector<Node> ghost_list(ghosts.begin(), ghosts.end());
         // Those of all levels would take much memory until the next filling.
-        upper = interpolations.next(first_mesh + l, nodes, ghost_list);
+        upper = interpolations.next(first_space + l, nodes, ghost_list);
         others.clear();
         for (std::size_t e = 0; e < upper.begin[nodes.size()]; ++e)
           if (is_foreign(upper.parents[e].node))

@@ -8,20 +8,20 @@
 namespace Viscoplastic
 {
   Interpolation
-  LevelInterpolations::next(const unsigned int       mesh,
+  LevelInterpolations::next(const unsigned int       space,
                             const std::vector<Node> &nodes,
                             const std::vector<Node> &ghosts)
   {
     const auto displacement = [&](const Node node) {
       const std::size_t n = node - hierarchy.begin;
-      if (hierarchy.first_level[n] < mesh)
+      if (hierarchy.first_level[n] < space)
         return Row{{node, 1.}};
       return Row(hierarchy.parents.begin() + hierarchy.row_begin[n],
                  hierarchy.parents.begin() + hierarchy.row_begin[n + 1]);
     };
     std::map<Node, Row> others;
     if (hierarchy.has_interfaces)
-      others = at_interfaces(mesh, nodes, displacement);
+      others = at_interfaces(space, nodes, displacement);
     const auto row = [&](const Node node) {
       const auto found = others.find(node);
       return found == others.end() ? displacement(node) : found->second;
@@ -35,7 +35,7 @@ namespace Viscoplastic
     };
     for (const Node node : nodes)
       if (others.empty() &&
-          hierarchy.first_level[node - hierarchy.begin] < mesh)
+          hierarchy.first_level[node - hierarchy.begin] < space)
         {
           result.parents.push_back({node, 1.}); // as row() says
           result.begin.push_back(result.parents.size());
@@ -52,7 +52,7 @@ namespace Viscoplastic
 
   std::map<LevelInterpolations::Node, LevelInterpolations::Row>
   LevelInterpolations::at_interfaces(
-    const unsigned int                    mesh,
+    const unsigned int                    space,
     const std::vector<Node>              &nodes,
     const std::function<Row(const Node)> &displacement)
   {
@@ -88,7 +88,7 @@ namespace Viscoplastic
       return found == rows.end() ? nothing : found->second;
     };
 
-    // Express the mortar rows by nodes of the coarser mesh.
+    // Express the mortar rows by nodes of the coarser space.
     std::set<Node> others;
     for (const auto &of_node : opposite)
       for (const auto &other : of_node.second)
@@ -104,7 +104,7 @@ namespace Viscoplastic
               weight,
               is_owned(other) ? displacement(other) : of_others.at(other));
         by_coarse_nodes[node] = to_row(sums);
-        if (hierarchy.first_level[node - hierarchy.begin] < mesh)
+        if (hierarchy.first_level[node - hierarchy.begin] < space)
           coarse_opposite[node] = by_coarse_nodes[node];
       }
 

@@ -8,6 +8,7 @@
 
 #include "bulk_scenario.h"
 
+#include <algorithm>
 #include <map>
 
 namespace
@@ -63,17 +64,20 @@ namespace
     for (const auto dof : scenario.space->owned)
       x[dof] = position.at(dof)[dof % dim];
     Utilities::MPI::sum(x, MPI_COMM_WORLD, x);
-    std::vector<unsigned int> n_new(hierarchy.n_levels, 0);
+    // The first space of each node, and of the nodes that depend on it.
+    std::vector<unsigned int> first(hierarchy.end_of_mesh, 0),
+      of_children(hierarchy.end_of_mesh, hierarchy.n_levels);
     for (std::size_t n = 0; n < hierarchy.first_level.size(); ++n)
       {
         const auto first_dof = (hierarchy.begin + n) * dim;
         if (scenario.space->cartesian_hanging_nodes().is_constrained(first_dof))
           {
             EXPECT_GE(hierarchy.first_level[n], hierarchy.n_levels);
+            first[hierarchy.begin + n] = hierarchy.n_levels;
             continue;
           }
         ASSERT_LT(hierarchy.first_level[n], hierarchy.n_levels);
-        ++n_new[hierarchy.first_level[n]];
+        first[hierarchy.begin + n] = hierarchy.first_level[n];
         EXPECT_EQ(hierarchy.row_begin[n] == hierarchy.row_begin[n + 1],
                   hierarchy.first_level[n] == 0);
         if (hierarchy.first_level[n] == 0)
@@ -86,6 +90,8 @@ namespace
           {
             const auto &[parent, weight] = hierarchy.parents[e];
             sum += weight;
+            of_children[parent] =
+              std::min(of_children[parent], hierarchy.first_level[n]);
             for (unsigned int d = 0; d < dim; ++d)
               interpolated[d] += weight * x[parent * dim + d];
           }
@@ -93,13 +99,25 @@ namespace
         for (unsigned int d = 0; d < dim; ++d)
           EXPECT_NEAR(interpolated[d], x[first_dof + d], 1e-14);
       }
-    Utilities::MPI::sum(n_new, MPI_COMM_WORLD, n_new);
-    // The meshes have 2, 4 and 8 cells along x.
-    EXPECT_EQ(n_new[0], dim == 2 ? 6u : 12u);
-    EXPECT_EQ(n_new[0] * dim, scenario.space->n_first_dofs());
-    EXPECT_EQ(n_new[0] + n_new[1], dim == 2 ? 15u : 45u);
-    EXPECT_EQ(n_new[0] + n_new[1] + n_new[2], dim == 2 ? 45u : 225u);
-    EXPECT_GT(n_new[3], 0u);
+    Utilities::MPI::sum(first, MPI_COMM_WORLD, first);
+    Utilities::MPI::min(of_children, MPI_COMM_WORLD, of_children);
+    unsigned int n_of_first_space = 0;
+    for (std::size_t n = 0; n < first.size(); ++n)
+      if (first[n] == 0)
+        {
+          ++n_of_first_space;
+          EXPECT_GT(of_children[n], 0u);
+        }
+      else if (first[n] < hierarchy.n_levels) // no sooner than needed
+        {
+          EXPECT_EQ(first[n] + 1, of_children[n]);
+        }
+    EXPECT_EQ(n_of_first_space, dim == 2 ? 6u : 12u);
+    EXPECT_EQ(n_of_first_space * dim, scenario.space->n_first_dofs());
+    // Cells that were refined less leave with the finest ones.
+    EXPECT_EQ(hierarchy.n_levels, 4u);
+    EXPECT_LT(std::count(first.begin(), first.end(), 2u),
+              std::count(first.begin(), first.end(), 3u) / (dim == 2 ? 2 : 4));
   }
 
 

@@ -14,12 +14,12 @@
 
 namespace Viscoplastic
 {
-  /// A multigrid V-cycle on the nested meshes that refinement has made: one
-  /// sweep of nodal block Gauss-Seidel before and after the coarse-mesh
-  /// correction. The first level has a direct solver or, if it is large, one
-  /// cycle of smoothed aggregation between two sweeps.
+  /// A multigrid V-cycle on the nested spaces of a NodeHierarchy: one sweep of
+  /// nodal block Gauss-Seidel before and after the coarse-mesh correction. The
+  /// first level has a direct solver or, if it is large, one cycle of smoothed
+  /// aggregation between two sweeps.
   ///
-  /// The matrices of coarser meshes are Galerkin products, for any material.
+  /// The matrices of coarser spaces are Galerkin products, for any material.
   /// They do not contain the truncation: LevelMasks apply it, so that changing
   /// it costs little. Multigrid on truncated spaces is that of Graeser and
   /// Kornhuber, J. Comput. Math. 27, 2009.
@@ -31,8 +31,8 @@ namespace Viscoplastic
   public:
     struct Options
     {
-      /// The first level is the finest mesh with at most so many unknowns, or
-      /// the coarsest mesh if all have more.
+      /// The first level is the finest space with at most so many unknowns, or
+      /// the coarsest one if all have more.
       unsigned int coarse_size = 100;
     };
 
@@ -104,8 +104,8 @@ namespace Viscoplastic
 
     /// The first node of each rank, and the total number.
     std::vector<NodeHierarchy::Node> begins;
-    /// The mesh of the first level; finer ones follow.
-    unsigned int first_mesh = 0;
+    /// The space of the first level; finer ones follow.
+    unsigned int first_space = 0;
     /// Nodes of the last level whose frames are rotated, and their directions.
     std::vector<std::pair<unsigned int, Tensor<2, dim>>> rotated_nodes;
     std::vector<std::unique_ptr<MultigridLevel<dim>>>    levels;

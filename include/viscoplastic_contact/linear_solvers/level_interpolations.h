@@ -10,9 +10,9 @@
 
 namespace Viscoplastic
 {
-  /// Interpolations of the unknowns between the meshes of a hierarchy, in
+  /// Interpolations of the unknowns between the spaces of a hierarchy, in
   /// Cartesian components: except at interfaces between bodies, those of
-  /// displacements. They are constructed from the finest mesh down: the nodes
+  /// displacements. They are constructed from the finest space down: the nodes
   /// opposite to a coarse node are those on the finest mesh, expressed by
   /// coarse nodes, so that the spaces stay nested. Calls are collective.
   class LevelInterpolations
@@ -30,11 +30,11 @@ namespace Viscoplastic
       , opposite(hierarchy.opposite)
     {}
 
-    /// Return the interpolation to @p mesh, the finest one in the first call
-    /// and then the next coarser each time, from the mesh below it: rows of its
+    /// Return the interpolation to @p space, the finest one in the first call
+    /// and then the next coarser each time, from the one below it: rows of its
     /// owned @p nodes, then of @p ghosts.
     Interpolation
-    next(const unsigned int       mesh,
+    next(const unsigned int       space,
          const std::vector<Node> &nodes,
          const std::vector<Node> &ghosts);
 
@@ -45,14 +45,14 @@ namespace Viscoplastic
     /// displacements (@p displacement: rows of owned nodes), because the
     /// unknowns of these nodes or their parents are jumps across an interface.
     std::map<Node, Row>
-    at_interfaces(const unsigned int                    mesh,
+    at_interfaces(const unsigned int                    space,
                   const std::vector<Node>              &nodes,
                   const std::function<Row(const Node)> &displacement);
 
     const NodeHierarchy     &hierarchy;
     const std::vector<Node> &begins;
     const MPI_Comm           communicator;
-    /// Mortar rows of owned nodes on the mesh of the next call.
+    /// Mortar rows of owned nodes in the space of the next call.
     std::map<Node, Row> opposite;
   };
 } // namespace Viscoplastic

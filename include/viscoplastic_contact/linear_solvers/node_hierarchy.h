@@ -13,19 +13,22 @@ namespace Viscoplastic
 {
   using namespace dealii;
 
-  /// The nodes of the nested meshes from which a mesh has come by refinement:
-  /// mesh l has the cells of level l and the active cells of lower levels, so
-  /// the last one is the mesh itself. The nodes of mesh l-1 are nodes of mesh
-  /// l, and hanging nodes hang in all meshes that have them, so that the spaces
-  /// are nested, too.
+  /// The nodes of nested spaces of linear elements, from that of the coarse
+  /// mesh to that of the mesh itself. A node that refinement has added depends
+  /// on the vertices of the refined cell, its parents; each space has the nodes
+  /// of the next finer one on which others there depend, and those of the
+  /// coarse mesh. So all parts of a mesh become coarser at once, whatever their
+  /// width, and all spaces together have hardly more nodes than the mesh (those
+  /// without its finest cells, without the finest two, ... would have several
+  /// times as many).
   ///
-  /// On all levels, a node has its number in the last mesh, which is its first
+  /// On all levels, a node has its number in the mesh, which is its first
   /// degree of freedom divided by the dimension, and its owner there.
   struct NodeHierarchy
   {
     using Node = types::global_dof_index;
 
-    /// The number of meshes, the same on all ranks.
+    /// The number of spaces, the same on all ranks.
     unsigned int n_levels = 0;
     /// The range of nodes that this rank owns, [begin, end).
     Node begin = 0, end = 0;
@@ -34,13 +37,13 @@ namespace Viscoplastic
     /// are not displacements of mesh nodes.
     Node end_of_mesh = numbers::invalid_dof_index;
 
-    /// For each owned node the first mesh that has it; invalid_unsigned_int for
-    /// hanging nodes, which are not unknowns of any mesh.
+    /// For each owned node the first space that has it; invalid_unsigned_int
+    /// for hanging nodes, which are not unknowns of any space.
     std::vector<unsigned int> first_level;
 
     /// A coarse node and its weight in the interpolation, in Cartesian
-    /// components, to an owned node that the next mesh adds. Rows of parents
-    /// are compressed, and empty for nodes of the first mesh.
+    /// components, to an owned node that the next space adds. Rows of parents
+    /// are compressed, and empty for nodes of the first space.
     struct Parent
     {
       Node   node;

@@ -257,29 +257,6 @@ namespace Viscoplastic
 
 
 
-  void
-  remark_on_changes(const CheckpointManifest &checkpoint,
-                    const ParameterChanges   &changes,
-                    Console                  &console)
-  {
-    const unsigned int n_ranks =
-      Utilities::MPI::n_mpi_processes(MPI_COMM_WORLD);
-    if (checkpoint.n_ranks != n_ranks)
-      console.remark("Note: the checkpoint is from " +
-                     std::to_string(checkpoint.n_ranks) +
-                     " MPI rank(s), this run has " + std::to_string(n_ranks) +
-                     "; results will differ by the contact tolerance.");
-    if (checkpoint.version != version)
-      console.remark("Note: the checkpoint is from version '" +
-                     excerpt(checkpoint.version) + "', this is " + version +
-                     ".");
-    if (!changes.allowed.empty())
-      console.remark("Note: changed since the checkpoint: " +
-                     enumeration(changes.allowed) + ".");
-  }
-
-
-
   template <int dim>
   PackedRun
   pack_run(RunState<dim>                                   &run,
@@ -372,6 +349,7 @@ namespace Viscoplastic
                         "beginning or not at all."));
     archive &has_estimate &output_times &earlier_seconds;
     exchange_run(archive, run);
+    is_solution = run.accepted.is_solution;
     exchange_memory(archive, memory);
     for (bool &has_field : has_field_of_quantity)
       archive &has_field;
@@ -447,7 +425,36 @@ namespace Viscoplastic
                            "' does not fit the scene."));
     if (changes.of_data) // linearized with other data
       memory.quantity = {};
+    // With changed data, the restored state does not solve its step.
+    run.accepted.is_solution = is_solution && !changes.of_data;
+    run.accepted.forces =
+      evaluate_forces(discretization.stress_space,
+                      discretization.matrix,
+                      discretization.loads.assemble(run.accepted.state.t),
+                      run.accepted.state);
     return memory;
+  }
+
+
+
+  template <int dim>
+  void
+  RunArchive<dim>::remark_on_changes(Console &console) const
+  {
+    const unsigned int n_ranks =
+      Utilities::MPI::n_mpi_processes(MPI_COMM_WORLD);
+    if (checkpoint.n_ranks != n_ranks)
+      console.remark("Note: the checkpoint is from " +
+                     std::to_string(checkpoint.n_ranks) +
+                     " MPI rank(s), this run has " + std::to_string(n_ranks) +
+                     "; results will differ by the contact tolerance.");
+    if (checkpoint.version != version)
+      console.remark("Note: the checkpoint is from version '" +
+                     excerpt(checkpoint.version) + "', this is " + version +
+                     ".");
+    if (!changes.allowed.empty())
+      console.remark("Note: changed since the checkpoint: " +
+                     enumeration(changes.allowed) + ".");
   }
 
 

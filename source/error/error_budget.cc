@@ -15,16 +15,16 @@ namespace Viscoplastic
 
 
 
-  std::optional<ErrorBudget>
+  std::unique_ptr<ErrorBudget>
   ErrorBudget::of_run(const Parameters &parameters)
   {
     const ErrorControlParameters &control = parameters.error_control;
     if (!control.has_tolerance())
       return {};
-    return ErrorBudget(control.tolerance,
-                       parameters.dimension,
-                       order_of(parameters.time.scheme),
-                       !control.quantity.empty());
+    return std::make_unique<ErrorBudget>(control.tolerance,
+                                         parameters.dimension,
+                                         order_of(parameters.time.scheme),
+                                         !control.quantity.empty());
   }
 
 

@@ -83,12 +83,11 @@ namespace Viscoplastic
 
   template <int dim>
   void
-  ErrorEstimator<dim>::assess_equilibrium(const ContactReport &report,
-                                          EvaluatedState<dim> &initial) const
+  ErrorEstimator<dim>::assess_equilibrium(EvaluatedState<dim> &initial) const
   {
     initial.errors.energy_norm = energy_norm(initial.forces);
     initial.errors.space       = initial.space_estimate.total;
-    initial.errors.algebraic   = report.error;
+    initial.errors.algebraic   = initial.report.error;
   }
 
 

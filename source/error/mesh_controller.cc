@@ -115,13 +115,24 @@ namespace Viscoplastic
   template <int dim>
   bool
   MeshController<dim>::mark_first(const Discretization<dim> &discretization,
-                                  const double               estimate,
-                                  const double               allowed,
-                                  const Vector<double>      &squared_indicators)
+                                  const EvaluatedState<dim> &initial,
+                                  const Vector<double>      *squared_errors)
   {
-    return scene.is_adaptive() && allowed > 0. && estimate > allowed &&
+    if (!repeats_steps())
+      return false;
+    double estimate = initial.errors.initial, allowed = budget->initial();
+    if (squared_errors == nullptr)
+      {
+        const ErrorParts &errors = budget->errors(initial.errors);
+        squared_errors           = &initial.space_estimate.squared_indicators;
+        estimate                 = errors.space;
+        allowed                  = budget->space(errors,
+                                budget->size(budget->size(initial.errors)),
+                                scene.has_time_error());
+      }
+    return allowed > 0. && estimate > allowed &&
            mark_cells_to_tolerance(triangulation,
-                                   squared_indicators,
+                                   *squared_errors,
                                    limits(discretization),
                                    estimate / allowed);
   }

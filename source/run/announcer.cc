@@ -52,8 +52,11 @@ namespace Viscoplastic
   template <int dim>
   void
   Announcer<dim>::announce_equilibrium(const Scene<dim> &scene,
-                                       const double      largest_u0)
+                                       const State<dim> &initial)
   {
+    if (!scene.parameters.initial_state.equilibrate)
+      return;
+    const double largest_u0 = initial.u.linfty_norm();
     if (largest_u0 == 0.)
       return;
     console.stream()

@@ -139,16 +139,17 @@ namespace Viscoplastic
 
   template <int dim>
   void
-  RunFiles<dim>::resume(const std::vector<double> &output_times)
+  RunFiles<dim>::resume(const RunArchive<dim> &archive)
   {
-    const unsigned int n = run.accepted.state.n;
+    const State<dim>  &state = run.accepted.state;
+    const unsigned int n     = state.n;
     fail_together(communicator, [&]() {
       if (Utilities::MPI::this_mpi_process(communicator) == 0)
         run.recorder.write_to(std::make_unique<Statistics>(
           results_directory(parameters) + "statistics.csv", n));
     });
     output.emplace(run.scene, communicator);
-    output->resume(output_times);
+    output->resume(archive.output_times);
     lines.resume(directory(), n);
     // A run without regular checkpoints keeps the existing ones.
     const unsigned int n_kept = schedule.is_regular() ?
@@ -157,6 +158,11 @@ namespace Viscoplastic
     for (const std::string &remark :
          checkpoints.remove_others(n, n_kept).remarks)
       console.remark(remark);
+    console.stream() << "Restart after step " << n << " (t = " << state.t
+                     << run.scene.unit(Quantity::time) << ") from '"
+                     << checkpoints.path(n) << "'" << std::endl;
+    archive.remark_on_changes(console);
+    run.recorder.resume(state, archive.earlier_seconds);
   }
 
 

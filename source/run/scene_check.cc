@@ -74,6 +74,45 @@ namespace Viscoplastic
     }
 
 
+
+    /// Refuse initial data that violate (2.12); otherwise set their contact
+    /// multipliers.
+    template <int dim>
+    void
+    check_compatibility(const Discretization<dim> &discretization,
+                        State<dim>                &initial,
+                        const Load<dim>           &load)
+    {
+      constexpr double                  tolerance = 1e-6;
+      const CompatibilityViolation<dim> violation =
+        compatibility_violation(discretization.space,
+                                load,
+                                discretization.face.get(),
+                                initial.u,
+                                initial.contact);
+      // Manufactured data are in equilibrium up to quadrature errors.
+      const auto &solution = discretization.scene().exact_solution;
+      if (solution && solution->makes_data)
+        return;
+      AssertThrow(
+        violation.relative <= tolerance,
+        ExcMessage(
+          "The initial data are not in equilibrium with the loads at t = 0, "
+          "(2.12): the relative violation is " +
+          as_text(violation.relative) + ", more than " + as_text(tolerance) +
+          "; it is largest " +
+          (violation.is_axial ?
+             "in 'Loads/Axial force'" :
+             "at x = (" + as_text(violation.position) + "), " +
+               (violation.boundaries.empty() ?
+                  "inside of the body" :
+                  "on boundary " + list(violation.boundaries))) +
+          "; start with loads that the initial stress balances, or set "
+          "'Initial state/Equilibrate'."));
+    }
+
+
+
     /// Evaluate the data at later times: at ends of phases and about a hundred
     /// times between them, which include the ends of steps if there are fewer.
     /// Return the largest overlap of bodies and foundations in contact.
@@ -202,37 +241,44 @@ namespace Viscoplastic
 
 
   template <int dim>
-  void
-  check_compatibility(const Discretization<dim> &discretization,
-                      State<dim>                &initial,
-                      const Load<dim>           &load)
+  bool
+  resolve_initial_data(const Discretization<dim> &discretization,
+                       const ErrorEstimator<dim> *error_estimator,
+                       MeshController<dim>       &mesh_controller,
+                       TimeStepper<dim>          &time_stepper,
+                       EvaluatedState<dim>       &accepted)
   {
-    constexpr double                  tolerance = 1e-6;
-    const CompatibilityViolation<dim> violation =
-      compatibility_violation(discretization.space,
-                              load,
-                              discretization.face.get(),
-                              initial.u,
-                              initial.contact);
-    // Manufactured data are in equilibrium up to quadrature errors.
-    const auto &solution = discretization.scene().exact_solution;
-    if (solution && solution->makes_data)
-      return;
-    AssertThrow(
-      violation.relative <= tolerance,
-      ExcMessage(
-        "The initial data are not in equilibrium with the loads at t = 0, "
-        "(2.12): the relative violation is " +
-        as_text(violation.relative) + ", more than " + as_text(tolerance) +
-        "; it is largest " +
-        (violation.is_axial ?
-           "in 'Loads/Axial force'" :
-           "at x = (" + as_text(violation.position) + "), " +
-             (violation.boundaries.empty() ?
-                "inside of the body" :
-                "on boundary " + list(violation.boundaries))) +
-        "; start with loads that the initial stress balances, or set "
-        "'Initial state/Equilibrate'."));
+    const Scene<dim> &scene       = discretization.scene();
+    const bool        equilibrate = scene.parameters.initial_state.equilibrate;
+    accepted.state =
+      make_initial_state(discretization.stress_space, equilibrate);
+    accepted.rate.reset();
+    if (error_estimator != nullptr)
+      {
+        const Vector<double> squared_errors =
+          error_estimator->begin(discretization.stress_space, accepted);
+        if (mesh_controller.mark_first(discretization,
+                                       accepted,
+                                       &squared_errors))
+          return false;
+      }
+    if (equilibrate)
+      time_stepper.equilibrate(accepted);
+    else
+      {
+        const Load<dim> load = discretization.loads.assemble(0.);
+        check_compatibility(discretization, accepted.state, load);
+        accepted.forces = evaluate_forces(discretization.stress_space,
+                                          discretization.matrix,
+                                          load,
+                                          accepted.state);
+      }
+    if (scene.is_adaptive() || equilibrate)
+      time_stepper.estimate(accepted);
+    if (error_estimator == nullptr || !equilibrate)
+      return true;
+    error_estimator->assess_equilibrium(accepted);
+    return !mesh_controller.mark_first(discretization, accepted, nullptr);
   }
 
 
@@ -286,9 +332,7 @@ namespace Viscoplastic
     const FESystem<dim>                       fe(FE_Q<dim>(1), dim);
     DoFHandler<dim>                           dof_handler(triangulation);
     const auto  budget = ErrorBudget::of_run(parameters);
-    StepControl control(parameters,
-                        scene.schedule,
-                        budget ? &*budget : nullptr);
+    StepControl control(parameters, scene.schedule, budget.get());
     TimerOutput timer(out, TimerOutput::never, TimerOutput::wall_times);
 
     make_first_mesh(scene, triangulation, control, &announcer);
@@ -298,8 +342,7 @@ namespace Viscoplastic
     announcer.announce(d);
     announcer.warn_of_held_faces(d);
     // This throws if output points, lines or integrals are wrong.
-    Recorder<dim>(scene, control, console, timer, budget ? &*budget : nullptr)
-      .set_mesh(d);
+    Recorder<dim>(scene, control, console, timer, budget.get()).set_mesh(d);
     for (const std::string &doubt : implausible_data(d, out))
       console.remark("Warning: " + doubt);
 
@@ -333,7 +376,7 @@ namespace Viscoplastic
 
   VISCOPLASTIC_INSTANTIATE(make_first_mesh);
   VISCOPLASTIC_INSTANTIATE(check_stages);
-  VISCOPLASTIC_INSTANTIATE(check_compatibility);
+  VISCOPLASTIC_INSTANTIATE(resolve_initial_data);
   VISCOPLASTIC_INSTANTIATE(check_steps);
   VISCOPLASTIC_INSTANTIATE(check_scene);
 } // namespace Viscoplastic

@@ -12,9 +12,9 @@
 namespace Viscoplastic
 {
   template <int dim>
-  ViscoplasticContact<dim>::ViscoplasticContact(const Parameters &parameters,
-                                                Console          &console,
-                                                const PilotRun   &pilot_run)
+  ViscoplasticContact<dim>::ViscoplasticContact(const Parameters    &parameters,
+                                                Console             &console,
+                                                const PilotRun<dim> &pilot_run)
     : communicator(MPI_COMM_WORLD)
     , parameters(parameters)
     , scene(parameters)
@@ -23,8 +23,8 @@ namespace Viscoplastic
     , dof_handler(triangulation)
     , pilot_run(pilot_run)
     , budget(ErrorBudget::of_run(parameters))
-    , control(parameters, scene.schedule, budget ? &*budget : nullptr)
-    , mesh_controller(scene, triangulation, budget ? &*budget : nullptr)
+    , control(parameters, scene.schedule, budget.get())
+    , mesh_controller(scene, triangulation, budget.get())
     , error_estimator(parameters.error_control.error_estimator ?
                         std::make_unique<ErrorEstimator<dim>>(scene) :
                         nullptr)
@@ -33,13 +33,8 @@ namespace Viscoplastic
     , announcer(console)
     , timer(out, TimerOutput::never, TimerOutput::wall_times)
     , known_solution(scene, timer)
-    , recorder(scene, control, console, timer, budget ? &*budget : nullptr)
-    , run_state{scene,
-                accepted,
-                control,
-                budget ? &*budget : nullptr,
-                pass,
-                recorder}
+    , recorder(scene, control, console, timer, budget.get())
+    , run_state{scene, accepted, control, budget.get(), pass, recorder}
   {}
 
 
@@ -83,12 +78,14 @@ namespace Viscoplastic
       {
         if (scene.stage_is_over(accepted.state.t))
           enter_next_stage();
-        if (mesh_controller.is_due(accepted.state.n))
-          adapt_mesh();
+        if (mesh_controller.is_due(accepted.state.n) &&
+            mesh_controller.mark(*discretization,
+                                 accepted,
+                                 recorder.size_so_far()))
+          change_mesh();
         AcceptedStep<dim> step = next_step();
         if (refine_for(step))
           {
-            pass.has_changed_mesh |= accepted.state.n > 0;
             if (needs_another_pass())
               return "";
             continue;
@@ -159,17 +156,13 @@ namespace Viscoplastic
   void
   ViscoplasticContact<dim>::begin_state()
   {
-    Expectation expectation;
+    std::string remark;
     if (budget)
       {
         if (!pass.follows_another)
           {
             TimerOutput::Scope phase(timer, "pilot run");
-            expectation = pilot_run();
-            triangulation.refine_global(expectation.refinements);
-            budget->expect_size(expectation.size);
-            control.expect_dual_norms(expectation.dual_times,
-                                      expectation.dual_norms);
+            remark = pilot_run(*budget, control, triangulation);
           }
         control.expect_size(budget->expected_size);
       }
@@ -179,19 +172,9 @@ namespace Viscoplastic
       check_exact_solution(discretization->space);
     set_initial_state();
     check_steps(*discretization, control, console, accepted);
-    if (expectation.refinements > 0)
-      console.remark("Note: '" + scene.names.quantity(scene.quantity->name) +
-                     "' is zero on the scene's first mesh, which errs much; "
-                     "this run begins with 'Geometry/Global refinements' = " +
-                     std::to_string(parameters.geometry.global_refinements +
-                                    expectation.refinements) +
-                     '.');
     // Wrong scenes, which make pilot runs fail as well, have been refused.
-    if (!expectation.failure.empty())
-      console.remark("Note: the run on the first mesh that tells how large the "
-                     "solution becomes has failed, so that errors will be "
-                     "relative to what it has been so far: " +
-                     expectation.failure);
+    if (!remark.empty())
+      console.remark(remark);
   }
 
 
@@ -237,10 +220,10 @@ namespace Viscoplastic
     has_recorded_initial_state = true;
     AcceptedStep<dim> initial;
     initial.time_step = {0, 0., 0., 0.};
+    initial.report    = accepted.report;
     // Write first: expected times of steps are measured from the record on.
     if (files)
       files->write(initial.time_step);
-    initial.report = initial_report;
     // Only the record has the estimate of the quantity in the initial state.
     // The state is moved, since a copy has all fields.
     const ErrorEstimate errors         = accepted.errors;
@@ -291,64 +274,13 @@ namespace Viscoplastic
   void
   ViscoplasticContact<dim>::set_initial_state()
   {
-    const bool equilibrate = parameters.initial_state.equilibrate;
-    bool       is_refined  = false;
-    do
-      {
-        const Discretization<dim> &d = *discretization;
-        accepted.state = make_initial_state(d.stress_space, equilibrate);
-        accepted.rate.reset();
-        if (error_estimator)
-          {
-            const Vector<double> squared_by_cell =
-              error_estimator->begin(d.stress_space, accepted);
-            if (budget)
-              {
-                is_refined = refine_first_mesh(accepted.errors.initial,
-                                               budget->initial(),
-                                               squared_by_cell);
-                if (is_refined)
-                  continue;
-              }
-          }
-        if (equilibrate)
-          initial_report = time_stepper->equilibrate(accepted);
-        else
-          {
-            const Load<dim> load = d.loads.assemble(0.);
-            check_compatibility(d, accepted.state, load);
-            accepted.forces =
-              evaluate_forces(d.stress_space, d.matrix, load, accepted.state);
-          }
-        if (scene.is_adaptive() || equilibrate)
-          time_stepper->estimate(accepted);
-        if (!error_estimator || !equilibrate)
-          break;
-        ErrorEstimate &errors = accepted.errors;
-        error_estimator->assess_equilibrium(initial_report, accepted);
-        is_refined =
-          budget &&
-          refine_first_mesh(budget->errors(errors).space,
-                            budget->space(budget->errors(errors),
-                                          budget->size(budget->size(errors)),
-                                          scene.has_time_error()),
-                            accepted.space_estimate.squared_indicators);
-      }
-    while (is_refined);
-    if (equilibrate)
-      announcer.announce_equilibrium(scene, accepted.state.u.linfty_norm());
-  }
-
-
-
-  template <int dim>
-  void
-  ViscoplasticContact<dim>::adapt_mesh()
-  {
-    if (mesh_controller.mark(*discretization,
-                             accepted,
-                             recorder.summary().controlled_errors().size))
-      change_mesh();
+    while (!resolve_initial_data(*discretization,
+                                 error_estimator.get(),
+                                 mesh_controller,
+                                 *time_stepper,
+                                 accepted))
+      change_first_mesh();
+    announcer.announce_equilibrium(scene, accepted.state);
   }
 
 
@@ -359,21 +291,27 @@ namespace Viscoplastic
   {
     if (!mesh_controller.repeats_steps())
       return false;
-    if (!mesh_controller.mark_for_step(
-          *discretization,
-          accepted,
-          step.end,
-          std::max(budget->size(accepted.errors),
-                   recorder.summary().controlled_errors().size)))
+    if (!mesh_controller.mark_for_step(*discretization,
+                                       accepted,
+                                       step.end,
+                                       std::max(budget->size(accepted.errors),
+                                                recorder.size_so_far())))
       {
         mesh_controller.accept_step();
         return false;
       }
-    // Initial data projected to a coarse mesh would keep its errors.
     if (accepted.state.n == 0)
-      begin_on_finer_mesh();
+      {
+        // Initial data projected to a coarse mesh would keep its errors.
+        change_first_mesh();
+        set_initial_state();
+        recorder.stop_clock();
+      }
     else
-      change_mesh();
+      {
+        change_mesh();
+        pass.has_changed_mesh = true;
+      }
     control.repeat();
     out << "  mesh ";
     if (mesh_controller.excess() >= 1.005)
@@ -386,19 +324,12 @@ namespace Viscoplastic
 
 
   template <int dim>
-  bool
-  ViscoplasticContact<dim>::refine_first_mesh(
-    const double          estimate,
-    const double          allowed,
-    const Vector<double> &squared_indicators)
+  void
+  ViscoplasticContact<dim>::change_first_mesh()
   {
     TimerOutput::Scope phase(timer, "adaptation");
-    if (!mesh_controller.mark_first(
-          *discretization, estimate, allowed, squared_indicators))
-      return false;
     triangulation.execute_coarsening_and_refinement();
     set_up();
-    return true;
   }
 
 
@@ -423,21 +354,6 @@ namespace Viscoplastic
 
   template <int dim>
   void
-  ViscoplasticContact<dim>::begin_on_finer_mesh()
-  {
-    {
-      TimerOutput::Scope phase(timer, "adaptation");
-      triangulation.execute_coarsening_and_refinement();
-      set_up();
-    }
-    set_initial_state();
-    recorder.stop_clock();
-  }
-
-
-
-  template <int dim>
-  void
   ViscoplasticContact<dim>::enter_next_stage()
   {
     TimerOutput::Scope phase(timer, "adaptation");
@@ -456,28 +372,14 @@ namespace Viscoplastic
   void
   ViscoplasticContact<dim>::resume(const CheckpointManifest &checkpoint)
   {
-    const CheckpointStore &store = files->checkpoints;
-    RunArchive<dim>        archive(store, checkpoint, run_state, triangulation);
-    const State<dim>      &state       = accepted.state;
-    const bool             is_solution = accepted.is_solution;
-    scene.enter_stage(scene.stage_of_step_to(state.t));
-    set_up(); // resets is_solution
-    const Discretization<dim> &d = *discretization;
-    time_stepper->restore(accepted, archive.read_fields(d));
-    // With changed data, the restored state does not solve its step.
-    accepted.is_solution = is_solution && !archive.changes.of_data;
-    accepted.forces      = evaluate_forces(d.stress_space,
-                                      d.matrix,
-                                      d.loads.assemble(state.t),
-                                      state);
-
-    files->resume(archive.output_times);
-    out << "Restart after step " << state.n << " (t = " << state.t
-        << parameters.units.suffix(Quantity::time, dim) << ") from '"
-        << store.path(state.n) << "'" << std::endl;
-    remark_on_changes(checkpoint, archive.changes, console);
-
-    recorder.resume(state, archive.earlier_seconds);
+    RunArchive<dim> archive(files->checkpoints,
+                            checkpoint,
+                            run_state,
+                            triangulation);
+    scene.enter_stage(scene.stage_of_step_to(accepted.state.t));
+    set_up();
+    time_stepper->restore(accepted, archive.read_fields(*discretization));
+    files->resume(archive);
   }
 
 

@@ -319,7 +319,7 @@ namespace Viscoplastic
 
 
   template <int dim>
-  ContactReport
+  void
   TimeStepper<dim>::equilibrate(EvaluatedState<dim> &initial)
   {
     const Discretization<dim> &d = discretization;
@@ -338,7 +338,6 @@ namespace Viscoplastic
     initial.report             = solution.report;
     initial.forces =
       evaluate_forces(d.stress_space, d.matrix, problem.load, initial.state);
-    return solution.report;
   }
 
 

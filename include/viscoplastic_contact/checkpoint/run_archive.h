@@ -49,12 +49,6 @@ namespace Viscoplastic
     bool of_data = false;
   };
 
-  /// Tell the user which parameters differ from those of a checkpoint.
-  void
-  remark_on_changes(const CheckpointManifest &checkpoint,
-                    const ParameterChanges   &changes,
-                    Console                  &console);
-
   /// The contents of a checkpoint: manifest, and files of this rank by name.
   struct PackedRun
   {
@@ -86,17 +80,23 @@ namespace Viscoplastic
                RunState<dim>                             &run,
                parallel::distributed::Triangulation<dim> &triangulation);
 
-    /// Read the fields of the accepted state. Returns the data that the time
-    /// stepper keeps between steps.
+    /// Read the fields of the accepted state, and evaluate its forces. Returns
+    /// the data that the time stepper keeps between steps.
     StepperMemory<dim>
     read_fields(const Discretization<dim> &discretization);
 
-    /// Parameters that have changed since the checkpoint was written.
-    const ParameterChanges changes;
-    std::vector<double>    output_times;
-    double                 earlier_seconds = 0.;
+    /// Tell the user how this run differs from that of the checkpoint.
+    void
+    remark_on_changes(Console &console) const;
+
+    /// The times of the fields written, and the seconds that the run had taken.
+    std::vector<double> output_times;
+    double              earlier_seconds = 0.;
 
   private:
+    const ParameterChanges changes;
+    /// Whether the state solves the step that it ends.
+    bool                      is_solution = false;
     const CheckpointStore    &store;
     const CheckpointManifest &checkpoint;
     RunState<dim>            &run;

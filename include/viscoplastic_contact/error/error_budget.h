@@ -5,7 +5,7 @@
 #include <viscoplastic_contact/parameters/parameters.h>
 
 #include <algorithm>
-#include <optional>
+#include <memory>
 
 namespace Viscoplastic
 {
@@ -35,8 +35,8 @@ namespace Viscoplastic
                 const unsigned int order,
                 const bool         of_quantity = false);
 
-    /// The budget of a run with these parameters; nothing without a tolerance.
-    static std::optional<ErrorBudget>
+    /// The budget of a run with these parameters; null without a tolerance.
+    static std::unique_ptr<ErrorBudget>
     of_run(const Parameters &parameters);
 
     /// The errors whose sum the tolerance bounds.

@@ -86,8 +86,7 @@ namespace Viscoplastic
     /// Complete the estimate of an initial state that has been brought into
     /// equilibrium.
     void
-    assess_equilibrium(const ContactReport &report,
-                       EvaluatedState<dim> &initial) const;
+    assess_equilibrium(EvaluatedState<dim> &initial) const;
 
     /// Update the mesh-dependent part of the estimate of a state that has been
     /// transferred to a new mesh. @p memory_loss: norm of the loss of z; @p

@@ -64,14 +64,14 @@ namespace Viscoplastic
       n_refinements = n_vain = 0;
     }
 
-    /// Mark cells of the first mesh if an estimate of it is larger than
-    /// @p allowed. Returns whether the mesh is to change and the initial state
-    /// to be made again. Collective.
+    /// Mark cells of the first mesh if it is too coarse for the initial data,
+    /// whose @p squared_errors by cell are given, or, if these are null, for
+    /// the equilibrium at t = 0. Returns whether the mesh is to change and the
+    /// initial state to be made again. Collective.
     bool
     mark_first(const Discretization<dim> &discretization,
-               const double               estimate,
-               const double               allowed,
-               const Vector<double>      &squared_indicators);
+               const EvaluatedState<dim> &initial,
+               const Vector<double>      *squared_errors);
 
   private:
     /// The limits of the scene, with the number of cells that its memory budget

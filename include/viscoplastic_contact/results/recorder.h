@@ -119,6 +119,13 @@ namespace Viscoplastic
       return run;
     }
 
+    /// The largest size of the solution up to now, see ErrorBudget::size().
+    double
+    size_so_far() const
+    {
+      return run.controlled_errors().size;
+    }
+
     /// Wall time of this process by phase, see run_phases; `set-up' is that of
     /// the first mesh, while later ones belong to the adaptation.
     std::map<std::string, double>

@@ -28,10 +28,9 @@ namespace Viscoplastic
     void
     announce(const KinksOfScene &found);
 
-    /// Announce the largest displacement @p largest_u0 due to equilibrium at t
-    /// = 0.
+    /// Announce how far the body has moved into equilibrium at t = 0.
     void
-    announce_equilibrium(const Scene<dim> &scene, const double largest_u0);
+    announce_equilibrium(const Scene<dim> &scene, const State<dim> &initial);
 
     /// Announce the stage of construction that begins.
     void

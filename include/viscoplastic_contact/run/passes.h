@@ -7,13 +7,6 @@
 
 namespace Viscoplastic
 {
-  /// Estimate the size of a scene's solution by a run without files on its
-  /// first mesh, with at most 8 steps per phase. Keeps a reference to @p
-  /// parameters.
-  template <int dim>
-  PilotRun
-  pilot_run(const Parameters &parameters);
-
   /// Run a scene in as many passes as it takes. A run to the tolerance of a
   /// quantity of interest on adaptive meshes may take several: creep and slip
   /// depend on all meshes so far, which the estimate of a quantity neglects.

@@ -49,10 +49,10 @@ namespace Viscoplastic
     void
     begin();
 
-    /// Continue the files after the accepted state, with fields at @p
-    /// output_times; removes later rows, fields and checkpoints.
+    /// Continue the files and the record after the accepted state, which has
+    /// been read from @p archive; removes later rows, fields and checkpoints.
     void
-    resume(const std::vector<double> &output_times);
+    resume(const RunArchive<dim> &archive);
 
     /// Set the mesh of the accepted state. Keeps a reference to it.
     void

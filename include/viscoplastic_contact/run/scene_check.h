@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
-#include <viscoplastic_contact/error/evaluated_state.h>
+#include <viscoplastic_contact/error/mesh_controller.h>
 #include <viscoplastic_contact/run/announcer.h>
-#include <viscoplastic_contact/time_stepping/step_control.h>
+#include <viscoplastic_contact/time_stepping/time_stepper.h>
 
 namespace Viscoplastic
 {
@@ -27,13 +27,16 @@ namespace Viscoplastic
                DoFHandler<dim>          &dof_handler,
                Scene<dim>               &scene);
 
-  /// Refuse initial data that violate (2.12); otherwise set their contact
-  /// multipliers.
+  /// Give @p accepted the initial data, (3.20), in equilibrium if the scene
+  /// asks for that. Returns false, with cells marked, if the mesh of a run to a
+  /// tolerance is too coarse for them. @p error_estimator may be null.
   template <int dim>
-  void
-  check_compatibility(const Discretization<dim> &discretization,
-                      State<dim>                &initial,
-                      const Load<dim>           &load);
+  bool
+  resolve_initial_data(const Discretization<dim> &discretization,
+                       const ErrorEstimator<dim> *error_estimator,
+                       MeshController<dim>       &mesh_controller,
+                       TimeStepper<dim>          &time_stepper,
+                       EvaluatedState<dim>       &accepted);
 
   /// Refuse a first step beyond the stability limit before any file is written,
   /// and warn of later ones. Sets the rate of @p initial.

@@ -22,23 +22,14 @@
 
 namespace Viscoplastic
 {
-  /// The expected size of the solution, and other data that a run to a
-  /// tolerance needs before its first step.
-  struct Expectation
-  {
-    /// The expected size in the energy norm or of the quantity of interest;
-    /// zero if unknown, with the reason in @p failure.
-    double      size = 0.;
-    std::string failure;
-    /// Norms of the dual solution of a quantity at the given times.
-    std::vector<double> dual_times, dual_norms;
-    /// The number of refinements of the first mesh that make the quantity of
-    /// interest nonzero.
-    unsigned int refinements = 0;
-  };
-
-  /// Computes the expectation. Collective.
-  using PilotRun = std::function<Expectation()>;
+  /// Tells budget and step control what a run to a tolerance has to know before
+  /// its first step, and refines its first mesh as far as it has to be. Returns
+  /// a remark, or none. Collective.
+  template <int dim>
+  using PilotRun =
+    std::function<std::string(ErrorBudget &,
+                              StepControl &,
+                              parallel::distributed::Triangulation<dim> &)>;
 
 
 
@@ -58,11 +49,12 @@ namespace Viscoplastic
   class ViscoplasticContact
   {
   public:
-    /// @p pilot_run is called in runs to a tolerance only. This and all member
-    /// functions throw ExcMessage with a sentence for the user.
-    ViscoplasticContact(const Parameters &parameters,
-                        Console          &console,
-                        const PilotRun   &pilot_run);
+    /// @p pilot_run is called in runs to a tolerance that do not follow() an
+    /// earlier pass. This and all member functions throw ExcMessage with a
+    /// sentence for the user.
+    ViscoplasticContact(const Parameters    &parameters,
+                        Console             &console,
+                        const PilotRun<dim> &pilot_run);
 
     /// Simulate from the start or from a checkpoint. Returns a sentence if a
     /// signal has ended the run early, after a checkpoint. If another pass is
@@ -119,25 +111,16 @@ namespace Viscoplastic
     /// Make everything that depends on the mesh.
     void
     set_up();
-    /// Change the mesh if the error estimate of the accepted state demands it.
-    void
-    adapt_mesh();
     /// Refine the mesh of the accepted state if it is too coarse for a step
     /// from there. Returns whether it was and the step has to be repeated.
     bool
     refine_for(const AcceptedStep<dim> &step);
-    /// Refine the first mesh where MeshController::mark_first() marks cells.
-    bool
-    refine_first_mesh(const double          estimate,
-                      const double          allowed,
-                      const Vector<double> &squared_indicators);
+    /// Change the mesh according to its marked cells, without the state.
+    void
+    change_first_mesh();
     /// Change the mesh according to its marked cells.
     void
     change_mesh();
-    /// Change the mesh before the first step: projects the initial data of the
-    /// scene to the new mesh.
-    void
-    begin_on_finer_mesh();
     /// Begin the next stage of construction.
     void
     enter_next_stage();
@@ -158,8 +141,8 @@ namespace Viscoplastic
     DoFHandler<dim>                           dof_handler;
 
     // Control of meshes and steps.
-    const PilotRun                       pilot_run;
-    std::optional<ErrorBudget>           budget; // of a tolerance
+    const PilotRun<dim>                  pilot_run;
+    std::unique_ptr<ErrorBudget>         budget; // null without a tolerance
     StepControl                          control;
     MeshController<dim>                  mesh_controller;
     std::unique_ptr<ErrorEstimator<dim>> error_estimator; // null if not wanted
@@ -171,9 +154,8 @@ namespace Viscoplastic
     /// The position of the run in its passes.
     PassState pass;
 
-    /// The last accepted state, and the report of the equilibrium at t = 0.
+    /// The last accepted state.
     EvaluatedState<dim> accepted;
-    ContactReport       initial_report;
     bool                has_recorded_initial_state = false;
 
     // Messages, timing and files.

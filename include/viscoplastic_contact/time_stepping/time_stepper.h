@@ -77,8 +77,8 @@ namespace Viscoplastic
              const TimeStep            &time_step);
 
     /// Bring an initial state into equilibrium with the loads at t = 0, and set
-    /// its forces. Collective.
-    ContactReport
+    /// its forces and its report. Collective.
+    void
     equilibrate(EvaluatedState<dim> &initial);
 
     /// Bring a state that came from another mesh into equilibrium with the

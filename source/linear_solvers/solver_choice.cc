@@ -185,39 +185,12 @@ namespace Viscoplastic
                    const double       n_steps,
                    const unsigned int n_ranks)
   {
-    // benchmarks/counts.py counts linear iterations of a step and the messages
-    // and reductions of an iteration. The latency is in seconds, of a message
-    // and of a stage of a reduction.
-    constexpr double n_iterations = 17., n_messages = 50., n_reductions = 34.,
-                     latency = 1e-6;
-    demand.n_ranks           = n_ranks;
+    demand.n_ranks        = n_ranks;
     const SolverCost cost = expected_cost(choose_bulk_solver(demand), demand);
     const double     n_meshes = std::max(1.,
                                      n_steps * demand.solves_per_step /
                                        std::max(demand.n_solves, 1u));
-    const double     n_waits =
-      n_ranks == 1 ? 0. : n_messages + n_reductions * std::log2(n_ranks);
-    return (n_meshes * cost.set_up + n_steps * cost.step) / n_ranks +
-           n_steps * latency * n_waits * n_iterations *
-             growth_by_incompressibility(demand.max_poissons_ratio);
-  }
-
-
-
-  unsigned int
-  best_ranks(const SolverDemand &demand,
-             const double        n_steps,
-             const unsigned int  n_most,
-             const double        worth)
-  {
-    const auto price = [&](const unsigned int n) {
-      return expected_seconds(demand, n_steps, n) * std::pow(n, worth);
-    };
-    unsigned int best = 1;
-    for (unsigned int n = 2; n <= n_most; n *= 2)
-      if (price(n) < price(best))
-        best = n;
-    return best;
+    return (n_meshes * cost.set_up + n_steps * cost.step) / n_ranks;
   }
 
 

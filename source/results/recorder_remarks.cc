@@ -321,16 +321,6 @@ namespace Viscoplastic
                        " of its norm, so that cell means may be too stiff in "
                        "long creep; refine the mesh or set 'Material/Stress "
                        "history' = quadrature points.");
-    const DoFHandler<dim> &dof_handler = discretization->space.dof_handler;
-    if (const unsigned int n_ranks =
-          Utilities::MPI::n_mpi_processes(discretization->space.communicator);
-        n_ranks > 1 && dof_handler.n_dofs() < 2000. * n_ranks &&
-        elapsed() > 20.)
-      result.push_back("Note: " + std::to_string(dof_handler.n_dofs()) +
-                       " degrees of freedom are few for " +
-                       std::to_string(n_ranks) +
-                       " ranks, which mostly wait for each other; one is "
-                       "faster.");
     if (run.tension_share.value > 0.01)
       result.push_back(
         at(run.tension_share.t) + " the foundation pulls at the body on " +

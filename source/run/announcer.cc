@@ -126,27 +126,29 @@ namespace Viscoplastic
       }
     if (demand.choice == LinearSolver::direct)
       demand.choice = LinearSolver::automatic;
-    // Do not recommend ranks beyond those whose gain is worth their cost.
-    constexpr double   worth  = 0.4;
-    const unsigned int n_most = 4096;
-    const unsigned int best =
-      best_ranks(demand,
-                 n_steps,
-                 std::max(n_ranks, std::thread::hardware_concurrency()),
-                 worth);
-    const unsigned int n_least = best_ranks(demand, n_steps, n_most);
-    const double       present = expected_seconds(demand, n_steps, n_ranks),
-                 of_best       = expected_seconds(demand, n_steps, best);
-    constexpr double short_run = 20.;
-    if (std::max(present, of_best) < short_run || of_best > 0.75 * present)
+    const auto seconds = [&](const unsigned int n) {
+      return expected_seconds(demand, n_steps, n);
+    };
+    const std::uint64_t n_most =
+      std::max<std::uint64_t>(1, demand.n_dofs / least_dofs_of_rank);
+    unsigned int best =
+      std::clamp<std::uint64_t>(demand.n_dofs / dofs_worth_a_rank,
+                                1,
+                                std::max(n_ranks,
+                                         std::thread::hardware_concurrency()));
+    if (seconds(1) < seconds(best)) // by the direct solver
+      best = 1;
+    constexpr double short_run = 20., hardly = 0.75;
+    const double     share = seconds(best) / seconds(n_ranks);
+    if (seconds(n_ranks) < short_run || (share > hardly && n_ranks <= n_most))
       return;
     std::ostream &out = console.stream();
-    out << "Ranks: " << best << (best == 1 ? " is" : " are")
-        << " expected to take " << number(of_best / present, 2)
-        << " of the time of " << n_ranks;
-    if (n_least < n_most)
-      out << ", more than " << n_least << " to lose again";
-    out << " (a model; see doc/cluster.md)\n";
+    out << "Ranks: ";
+    if (share <= hardly)
+      out << best << (best == 1 ? " is" : " are") << " expected to take "
+          << number(share, 2) << " of the time of " << n_ranks << ", ";
+    out << "more than " << n_most
+        << " to lose again (a model; see doc/cluster.md)\n";
   }
 
 

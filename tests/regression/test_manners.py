@@ -199,6 +199,23 @@ class Check(Manners):
         self.assertTrue(text.endswith("The scene is valid.\n"))
         self.assertEqual(list(self.work.iterdir()), [])
 
+    def test_advice_on_ranks(self):
+        """Of long runs: how many gain, and from how many on more lose."""
+        for ranks, refinements, steps, words in (
+            (1, 3, 200, r"Ranks: \d+ are .* 0\.\d+ of the time of 1, more than 107 "),
+            (1, 0, 200, ""),
+            (3, 0, 20000, "Ranks: .*more than 1 to lose again"),
+        ):
+            sets = f"Geometry/Global refinements={refinements}", f"Time/Phases=1: {steps}"
+            text = self.call(
+                "--check",
+                scene_file("coulomb_pad_3d"),
+                *[word for change in sets for word in ("--set", change)],
+                launcher=[*MPIRUN, "-n", str(ranks)] if ranks > 1 else [],
+            ).stdout
+            self.assertRegex(text, words)
+            self.assertEqual("Ranks: " in text, words != "")
+
     def test_stability_limit(self):
         """Of a linear law it is known before a state is: 2 eta/mu = 2.6."""
         known = ("Initial state/Equilibrate=true",)

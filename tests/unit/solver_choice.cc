@@ -147,57 +147,15 @@ namespace
 
 
 
-  TEST(SolverChoice, RanksShareTheWorkAndTalk)
+  TEST(SolverChoice, RanksShareTheWork)
   {
-    // (2.3 + 0.001 + 100 (0.37 + 0.0025)) / 4 + 100 17e-6 (50 + 34 log2(4))
-    EXPECT_NEAR(expected_seconds(steady(3, 110000), 100., 4), 10.08835, 1e-10);
+    // (2.3 + 0.001 + 100 (0.37 + 0.0025)) / 4
+    EXPECT_NEAR(expected_seconds(steady(3, 110000), 100., 4), 9.88775, 1e-10);
     EXPECT_NEAR(expected_seconds(steady(3, 110000), 100., 1), 39.551, 1e-10);
-    // Iterations are multiplied by 0.35 (1 - 2 nu)^(-1/2) = 24.75.
-    SolverDemand rubber       = steady(3, 110000);
-    rubber.max_poissons_ratio = 0.4999;
-    EXPECT_NEAR(expected_seconds(rubber, 100., 4), 234.528, 1e-3);
     // The mesh changes every fifth step, 20 times.
     SolverDemand often    = steady(3, 110000);
     often.n_solves        = 10;
     often.solves_per_step = 2;
     EXPECT_NEAR(expected_seconds(often, 100., 1), 37.25 + 20 * 2.301, 1e-10);
-  }
-
-
-
-  TEST(SolverChoice, MoreWorkWantsMoreRanks)
-  {
-    for (const unsigned int dim : {2, 3})
-      {
-        unsigned int before = 1;
-        for (unsigned int n_dofs = 1000; n_dofs < 100000000; n_dofs *= 3)
-          {
-            const SolverDemand  of_scene = steady(dim, n_dofs);
-            std::vector<double> seconds;
-            for (unsigned int n = 1; n <= 4096; n *= 2)
-              seconds.push_back(expected_seconds(of_scene, 100., n));
-            const auto least = std::min_element(seconds.begin(), seconds.end());
-            const unsigned int best = best_ranks(of_scene, 100., 4096);
-            EXPECT_EQ(best, 1u << (least - seconds.begin())) << n_dofs;
-            // From two ranks on, which all have multigrid, times decrease to
-            // the least one and increase after it.
-            for (auto s = seconds.begin() + 2; s != seconds.end(); ++s)
-              EXPECT_EQ(*s < *(s - 1), s <= least) << n_dofs;
-            EXPECT_GE(best, before) << n_dofs;
-            before = best;
-
-            // Take no more ranks than there are, and none without gain.
-            EXPECT_EQ(best_ranks(of_scene, 100., 3),
-                      seconds[1] < seconds[0] ? 2 : 1);
-            const unsigned int worth = best_ranks(of_scene, 100., 4096, 0.4);
-            EXPECT_LE(worth, best);
-            for (unsigned int i = 0, n = 1; n < worth; n *= 2, ++i)
-              EXPECT_GT(seconds[i] * std::pow(n, 0.4),
-                        expected_seconds(of_scene, 100., worth) *
-                          std::pow(worth, 0.4));
-          }
-        EXPECT_EQ(before, 4096);
-        EXPECT_EQ(best_ranks(steady(dim, 100), 100., 4096), 1);
-      }
   }
 } // namespace

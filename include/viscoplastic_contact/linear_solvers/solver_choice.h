@@ -70,22 +70,17 @@ namespace Viscoplastic
   expected_cost(const BulkSolverKind kind, const SolverDemand &demand);
 
 
-  /// The expected seconds of @p n_steps steps on @p n_ranks cores: those of one
-  /// rank divided by @p n_ranks, plus communication (doc/cluster.md).
+  /// The expected seconds of @p n_steps steps: those of one core, divided by
+  /// the number of ranks. True while these have `dofs_worth_a_rank' each.
   double
   expected_seconds(SolverDemand       demand,
                    const double       n_steps,
                    const unsigned int n_ranks);
 
-
-  /// Return the power of two n, at most @p n_most, for which expected_seconds()
-  /// times n^worth is least: twice the ranks have to save at least the part 1 -
-  /// 2^-worth of the time.
-  unsigned int
-  best_ranks(const SolverDemand &demand,
-             const double        n_steps,
-             const unsigned int  n_most,
-             const double        worth = 0.);
+  /// Degrees of freedom of a rank with which it is worth its core, and those
+  /// with fewer of which it loses by waiting for others: what follows from
+  /// counted messages (benchmarks/results.md, Prediction).
+  constexpr unsigned int dofs_worth_a_rank = 20000, least_dofs_of_rank = 1000;
 
 
   /// Bytes of the matrix per degree of freedom: a node has 5 (2D) or 14 (3D)

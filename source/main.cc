@@ -42,7 +42,7 @@ namespace
           throw;
         std::string sentence = parameters.quote_as_written(reason(error));
         sentence[0]          = static_cast<char>(std::tolower(sentence[0]));
-        AssertThrow(false, dealii::ExcMessage(origin + ": " + sentence));
+        refuse(origin + ": " + sentence);
         return "";
       }
     catch (const dealii::StandardExceptions::ExcMessage &error)
@@ -51,7 +51,7 @@ namespace
         const std::string quoted   = parameters.quote_as_written(sentence);
         if (quoted == sentence)
           throw;
-        AssertThrow(false, dealii::ExcMessage(quoted));
+        refuse(quoted);
         return "";
       }
   }
@@ -63,9 +63,8 @@ namespace
     const std::string text =
       scene_as_json(parameters, with_means, MPI_COMM_WORLD);
     if (dealii::Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) == 0)
-      AssertThrow(std::cout << text << std::flush,
-                  dealii::ExcMessage("Writing to the standard output failed; "
-                                     "is the disk full?"));
+      if (!(std::cout << text << std::flush))
+        refuse("Writing to the standard output failed; is the disk full?");
     return "";
   }
 
@@ -252,9 +251,8 @@ main(int argc, char *argv[])
       // A batch script without a scene must fail.
       const bool is_guide = command_line.task == CommandLine::Task::guide;
       if (rank == 0)
-        AssertThrow((is_guide ? std::cerr : std::cout) << text << std::flush,
-                    dealii::ExcMessage("Writing to the standard output failed; "
-                                       "is the disk full?"));
+        if (!((is_guide ? std::cerr : std::cout) << text << std::flush))
+          refuse("Writing to the standard output failed; is the disk full?");
       return is_guide ? 2 : 0;
     }
   catch (...)

@@ -21,9 +21,9 @@ namespace Viscoplastic
     if (log_name.empty() || Utilities::MPI::this_mpi_process(communicator) != 0)
       return;
     log_file.open(log_name);
-    AssertThrow(log_file,
-                ExcMessage("The log file '" + log_name +
-                           "' cannot be written; give --log another name."));
+    if (!log_file)
+      refuse("The log file '" + log_name +
+             "' cannot be written; give --log another name.");
   }
 
 
@@ -44,13 +44,11 @@ namespace Viscoplastic
   Console::check()
   {
     everywhere.flush();
-    AssertThrow(!log_file.is_open() || log_file.flush(),
-                ExcMessage(
-                  "The log file '" + log_name +
-                  "' is not complete: writing failed; is the disk full?"));
-    AssertThrow(!speaks || std::cout.flush(),
-                ExcMessage(
-                  "Writing to the standard output failed; is the disk full?"));
+    if (log_file.is_open() && !log_file.flush())
+      refuse("The log file '" + log_name +
+             "' is not complete: writing failed; is the disk full?");
+    if (speaks && !std::cout.flush())
+      refuse("Writing to the standard output failed; is the disk full?");
   }
 
 

@@ -144,13 +144,12 @@ namespace Viscoplastic
       {
         numbers.clear(); // refused below
       }
-    AssertThrow(numbers.size() == dim &&
-                  std::all_of(numbers.begin(),
-                              numbers.end(),
-                              [](const double x) { return std::isfinite(x); }),
-                ExcMessage("'" + entry + "' is '" + excerpt(text) +
-                           "', but it needs " + std::to_string(dim) +
-                           " finite numbers."));
+    if (numbers.size() != dim ||
+        !std::all_of(numbers.begin(), numbers.end(), [](const double x) {
+          return std::isfinite(x);
+        }))
+      refuse("'" + entry + "' is '" + excerpt(text) + "', but it needs " +
+             std::to_string(dim) + " finite numbers.");
     Point<dim> result;
     for (unsigned int d = 0; d < dim; ++d)
       result[d] = numbers[d];
@@ -319,11 +318,10 @@ namespace Viscoplastic
                                           const std::string &entry)
   {
     const auto parts = Utilities::split_string_list(text, ';');
-    AssertThrow(parts.size() == n_components,
-                ExcMessage(
-                  "'" + entry + "' needs " + std::to_string(n_components) +
-                  " components separated by semicolons, but '" + excerpt(text) +
-                  "' has " + std::to_string(parts.size()) + "."));
+    if (parts.size() != n_components)
+      refuse("'" + entry + "' needs " + std::to_string(n_components) +
+             " components separated by semicolons, but '" + excerpt(text) +
+             "' has " + std::to_string(parts.size()) + ".");
     for (const std::string &part : parts)
       components.emplace_back(part, entry);
   }

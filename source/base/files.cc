@@ -32,9 +32,9 @@ namespace Viscoplastic
     void
     check_written(const bool success, const std::string &name)
     {
-      AssertThrow(success,
-                  ExcMessage("'" + name + "' cannot be written: " +
-                             std::strerror(errno) + "."));
+      if (!success)
+        refuse("'" + name + "' cannot be written: " + std::strerror(errno) +
+               ".");
     }
 
 
@@ -136,8 +136,8 @@ namespace Viscoplastic
   {
     std::error_code   none;
     const std::string kind = kind_of(fs::symlink_status(name, none).type());
-    AssertThrow(kind.empty(),
-                ExcMessage("'" + name + "' cannot be written: " + kind + "."));
+    if (!kind.empty())
+      refuse("'" + name + "' cannot be written: " + kind + ".");
   }
 
 
@@ -147,8 +147,8 @@ namespace Viscoplastic
   {
     std::error_code   none;
     const std::string kind = kind_of(fs::status(name, none).type());
-    AssertThrow(kind.empty(),
-                ExcMessage("'" + name + "' cannot be read: " + kind + "."));
+    if (!kind.empty())
+      refuse("'" + name + "' cannot be read: " + kind + ".");
     errno = 0;
     std::ifstream file(name, std::ios::binary);
     if (!file && (errno == ENOENT || errno == ENOTDIR))
@@ -157,9 +157,8 @@ namespace Viscoplastic
     // Inserting the buffer of an empty file would set the fail bit.
     if (file && file.peek() != std::ifstream::traits_type::eof())
       bytes << file.rdbuf();
-    AssertThrow(file && bytes,
-                ExcMessage("'" + name +
-                           "' cannot be read: " + std::strerror(errno) + "."));
+    if (!file || !bytes)
+      refuse("'" + name + "' cannot be read: " + std::strerror(errno) + ".");
     return bytes.str();
   }
 

@@ -78,9 +78,9 @@ namespace Viscoplastic
     unsigned int             n_lines = 0;
     const auto               require = [&](const bool         condition,
                              const std::string &sentence) {
-      AssertThrow(condition,
-                  ExcMessage("'" + file + "', line " + std::to_string(n_lines) +
-                             ": " + sentence));
+      if (!condition)
+        refuse("'" + file + "', line " + std::to_string(n_lines) + ": " +
+               sentence);
     };
     while (std::getline(input, line))
       {
@@ -193,14 +193,12 @@ namespace Viscoplastic
     for (const auto &table : tables)
       for (const DataTable::Column &column : table->columns())
         {
-          AssertThrow(
-            std::find(taken.begin(), taken.end(), column.name) == taken.end(),
-            ExcMessage(
-              "'" + table->section + "/File': the column '" +
-              excerpt(column.name) + "' of '" + table->file +
-              "' has a name that expressions know already, as those of "
-              "places, functions and what laws are given (x, t, p, id); "
-              "give it another one."));
+          if (std::find(taken.begin(), taken.end(), column.name) != taken.end())
+            refuse("'" + table->section + "/File': the column '" +
+                   excerpt(column.name) + "' of '" + table->file +
+                   "' has a name that expressions know already, as those of "
+                   "places, functions and what laws are given (x, t, p, id); "
+                   "give it another one.");
           taken.push_back(column.name);
         }
     current_tables() = tables;

@@ -240,13 +240,13 @@ namespace Viscoplastic
         refuse(where + did_you_mean(unknown,
                                     names_of_units(wanted),
                                     "; it must be " + allowed + "."));
-      AssertThrow(found->end == text.size() + 1,
-                  ExcMessage(where + ", which is no unit behind '" +
-                             excerpt(text.substr(0, found->end - 1)) +
-                             "'; it must be " + allowed + "."));
-      AssertThrow(found->unit.dimension == wanted,
-                  ExcMessage(where + ", " + in_words(found->unit.dimension) +
-                             "; it must be " + allowed + "."));
+      if (found->end != text.size() + 1)
+        refuse(where + ", which is no unit behind '" +
+               excerpt(text.substr(0, found->end - 1)) + "'; it must be " +
+               allowed + ".");
+      if (!(found->unit.dimension == wanted))
+        refuse(where + ", " + in_words(found->unit.dimension) +
+               "; it must be " + allowed + ".");
       return found->unit;
     }
   } // namespace
@@ -417,15 +417,13 @@ namespace Viscoplastic
       missing.emplace_back("Time");
     if (stress_name.empty() && force_name.empty())
       missing.emplace_back("Stress");
-    AssertThrow(
-      missing.empty(),
-      ExcMessage(
+    if (!missing.empty())
+      refuse(
         "'Units' has no " + enumeration(missing) +
-        "; give `Length', `Time' and `Stress' (or `Force'), or none of them."));
-    AssertThrow(
-      stress_name.empty() || force_name.empty(),
-      ExcMessage("'Units' has both `Stress' and `Force'; give one of them, the "
-                 "other one follows."));
+        "; give `Length', `Time' and `Stress' (or `Force'), or none of them.");
+    if (!stress_name.empty() && !force_name.empty())
+      refuse("'Units' has both `Stress' and `Force'; give one of them, the "
+             "other one follows.");
     length = declared_unit("Length", length_name, length_dimension);
     time   = declared_unit("Time", time_name, time_dimension);
     if (!stress_name.empty())

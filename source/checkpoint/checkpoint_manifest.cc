@@ -44,11 +44,11 @@ namespace Viscoplastic
   CheckpointManifest::of_text(const std::string &text)
   {
     const auto require_sense = [](const bool condition) {
-      AssertThrow(condition, ExcMessage("the manifest is damaged"));
+      if (!condition)
+        refuse("the manifest is damaged");
     };
-    AssertThrow(text.compare(0, first_line.size() + 1, first_line + '\n') == 0,
-                ExcMessage(
-                  "its format is that of another version of the program"));
+    if (text.compare(0, first_line.size() + 1, first_line + '\n') != 0)
+      refuse("its format is that of another version of the program");
     const std::size_t last = text.rfind("\nchecksum ");
     require_sense(last != std::string::npos &&
                   text.substr(last + 1) ==

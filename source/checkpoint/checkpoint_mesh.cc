@@ -20,8 +20,8 @@ namespace Viscoplastic
   void
   require_sense(const bool condition)
   {
-    AssertThrow(condition,
-                ExcMessage("The checkpoint contradicts itself or the mesh."));
+    if (!condition)
+      refuse("The checkpoint contradicts itself or the mesh.");
   }
 
 

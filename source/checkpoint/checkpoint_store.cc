@@ -30,7 +30,8 @@ namespace Viscoplastic
     read_file(const std::string &name)
     {
       const std::optional<std::string> bytes = read_file_if_any(name);
-      AssertThrow(bytes, ExcMessage("'" + name + "' cannot be read."));
+      if (!bytes)
+        refuse("'" + name + "' cannot be read.");
       return *bytes;
     }
 
@@ -42,16 +43,16 @@ namespace Viscoplastic
     {
       std::error_code error;
       const auto      size = fs::file_size(directory + file.name, error);
-      AssertThrow(!error,
-                  ExcMessage("the file " + excerpt(file.name) + " is missing"));
-      AssertThrow(size == file.size,
-                  ExcMessage("the file " + excerpt(file.name) + " has " +
-                             std::to_string(size) + " bytes instead of " +
-                             std::to_string(file.size)));
+      if (error)
+        refuse("the file " + excerpt(file.name) + " is missing");
+      if (size != file.size)
+        refuse("the file " + excerpt(file.name) + " has " +
+               std::to_string(size) + " bytes instead of " +
+               std::to_string(file.size));
       std::string bytes = read_file(directory + file.name);
-      AssertThrow(bytes.size() == file.size && checksum(bytes) == file.checksum,
-                  ExcMessage("the file " + excerpt(file.name) +
-                             " does not have its checksum"));
+      if (bytes.size() != file.size || checksum(bytes) != file.checksum)
+        refuse("the file " + excerpt(file.name) +
+               " does not have its checksum");
       return bytes;
     }
 
@@ -189,10 +190,9 @@ namespace Viscoplastic
         if (!entry.is_complete || entry.path == path(entry.n))
           result.push_back(entry);
       }
-    AssertThrow(!error,
-                ExcMessage("The directory '" + directory +
-                           "' for checkpoints cannot be read: " +
-                           error.message() + '.'));
+    if (error)
+      refuse("The directory '" + directory +
+             "' for checkpoints cannot be read: " + error.message() + '.');
     std::sort(result.begin(), result.end(), [](const Entry &a, const Entry &b) {
       return std::make_pair(a.n, a.path) < std::make_pair(b.n, b.path);
     });
@@ -208,10 +208,10 @@ namespace Viscoplastic
       std::error_code error;
       if (rank == 0)
         fs::create_directories(directory, error);
-      AssertThrow(!error,
-                  ExcMessage("The directory '" + directory +
-                             "' for checkpoints cannot be written; change "
-                             "'Checkpoint/Directory' or its permissions."));
+      if (error)
+        refuse("The directory '" + directory +
+               "' for checkpoints cannot be written; change "
+               "'Checkpoint/Directory' or its permissions.");
     });
   }
 
@@ -339,9 +339,8 @@ namespace Viscoplastic
             text = Utilities::MPI::broadcast(communicator, text);
             fail_together(communicator, [&]() {
               manifest = CheckpointManifest::of_text(text);
-              AssertThrow(manifest.n == n,
-                          ExcMessage("it is of step " +
-                                     std::to_string(manifest.n)));
+              if (manifest.n != n)
+                refuse("it is of step " + std::to_string(manifest.n));
               for (std::size_t i = rank; i < manifest.files.size();
                    i += n_ranks)
                 read_checked(path(n) + '/', manifest.files[i]);

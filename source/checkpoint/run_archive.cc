@@ -144,11 +144,10 @@ namespace Viscoplastic
                                     state.n <= schedule.n_steps() &&
                                       schedule.step(state.n).t == state.t &&
                                       schedule.step(state.n).k == state.k);
-      AssertThrow(is_on_schedule,
-                  ExcMessage(
-                    "'Time/Phases' = " + run.scene.parameters.time.phases +
-                    " does not contain the step of the checkpoint '" + path +
-                    "'; change only what comes after it."));
+      if (!is_on_schedule)
+        refuse("'Time/Phases' = " + run.scene.parameters.time.phases +
+               " does not contain the step of the checkpoint '" + path +
+               "'; change only what comes after it.");
     }
 
 
@@ -331,22 +330,21 @@ namespace Viscoplastic
   {
     const std::string path = store.path(checkpoint.n),
                       name = "The checkpoint '" + path + "'";
-    AssertThrow(checkpoint.dimension == dim && changes.forbidden.empty(),
-                ExcMessage(name + " cannot go on with other unknowns: " +
-                           enumeration(changes.forbidden) +
-                           "; undo that, or begin without --restart."));
+    if (checkpoint.dimension != dim || !changes.forbidden.empty())
+      refuse(name + " cannot go on with other unknowns: " +
+             enumeration(changes.forbidden) +
+             "; undo that, or begin without --restart.");
     BinaryReader archive(store.read(checkpoint, run_file));
     CoarseMesh   coarse_mesh;
     archive &coarse_mesh.topology &coarse_mesh.vertices;
-    AssertThrow(coarse_mesh.agrees_with(describe_coarse_mesh(triangulation)),
-                ExcMessage(name + " belongs to another coarse mesh."));
+    if (!coarse_mesh.agrees_with(describe_coarse_mesh(triangulation)))
+      refuse(name + " belongs to another coarse mesh.");
     for (bool &has_field : has_nodal_field)
       archive &has_field;
-    AssertThrow(
-      has_nodal_field[3] == run.scene.keeps_friction_work(),
-      ExcMessage(name + " cannot go on with another sum: `friction work' among "
-                        "'Output/Additional fields' has to be there from the "
-                        "beginning or not at all."));
+    if (has_nodal_field[3] != run.scene.keeps_friction_work())
+      refuse(name + " cannot go on with another sum: `friction work' among "
+                    "'Output/Additional fields' has to be there from the "
+                    "beginning or not at all.");
     archive &has_estimate &output_times &earlier_seconds;
     exchange_run(archive, run);
     is_solution = run.accepted.is_solution;
@@ -418,11 +416,11 @@ namespace Viscoplastic
       return !Utilities::MPI::logical_or(!complete, communicator);
     };
     // On as many ranks as before, each rank has all data in its own file.
-    AssertThrow(((n_ranks == checkpoint.n_ranks && unpack(rank, rank + 1)) ||
-                 unpack(0, checkpoint.n_ranks)) &&
-                  !has_bytes_to_spare,
-                ExcMessage("The checkpoint '" + store.path(checkpoint.n) +
-                           "' does not fit the scene."));
+    if (((n_ranks != checkpoint.n_ranks || !unpack(rank, rank + 1)) &&
+         !unpack(0, checkpoint.n_ranks)) ||
+        has_bytes_to_spare)
+      refuse("The checkpoint '" + store.path(checkpoint.n) +
+             "' does not fit the scene.");
     if (changes.of_data) // linearized with other data
       memory.quantity = {};
     // With changed data, the restored state does not solve its step.

@@ -2,6 +2,7 @@
 #include <deal.II/base/timer.h>
 #include <deal.II/base/utilities.h>
 
+#include <viscoplastic_contact/base/messages.h>
 #include <viscoplastic_contact/contact/contact_iteration.h>
 #include <viscoplastic_contact/contact/kink_search.h>
 
@@ -168,13 +169,10 @@ namespace Viscoplastic
   ContactIteration::relax(const unsigned int n_sweeps)
   {
     residual = bulk.face_residual();
-    AssertThrow(!face.any(std::any_of(residual.begin(),
-                                      residual.end(),
-                                      [](const double r) {
-                                        return !std::isfinite(r);
-                                      })),
-                ExcMessage("The contact solver met a residual that is not "
-                           "finite."));
+    if (face.any(std::any_of(residual.begin(),
+                             residual.end(),
+                             [](const double r) { return !std::isfinite(r); })))
+      refuse("The contact solver met a residual that is not finite.");
     const auto    &stages = matrix.stages();
     Vector<double> change(face.n_dofs());
     const auto relax_stage = [&](const unsigned int s, const bool backward) {

@@ -2,6 +2,7 @@
 #include <deal.II/base/mpi.h>
 #include <deal.II/base/utilities.h>
 
+#include <viscoplastic_contact/base/messages.h>
 #include <viscoplastic_contact/contact/contact_iteration.h>
 
 #include <algorithm>
@@ -102,9 +103,8 @@ namespace Viscoplastic
         if (estimate > 0.)
           misjudged = std::clamp(confirmed / estimate, 1., largest_misjudgment);
       }
-    AssertThrow(std::isfinite(error),
-                ExcMessage("The contact solver met a value that is not "
-                           "finite."));
+    if (!std::isfinite(error))
+      refuse("The contact solver met a value that is not finite.");
     if (report.relative_error < 0.5 * best_error)
       {
         last_gain     = report.iterations;
@@ -228,6 +228,6 @@ namespace Viscoplastic
                                   "use the direct linear solver, on one "
                                   "rank, ")
               << "allow more iterations or a larger tolerance of contact.";
-    AssertThrow(false, ExcMessage(message.str()));
+    refuse(message.str());
   }
 } // namespace Viscoplastic

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <deal.II/base/exceptions.h>
 
+#include <viscoplastic_contact/base/messages.h>
 #include <viscoplastic_contact/contact/normal_compliance.h>
 
 #include <algorithm>
@@ -30,9 +31,8 @@ namespace Viscoplastic
             return next > 0. ? next : start;
           start = next;
         }
-      AssertThrow(false,
-                  ExcMessage("The penetration of a foundation that gives way "
-                             "cannot be found for its pressure law."));
+      refuse("The penetration of a foundation that gives way cannot be found "
+             "for its pressure law.");
       return start;
     }
   } // namespace

@@ -2,6 +2,7 @@
 #include <deal.II/base/bounding_box.h>
 #include <deal.II/dofs/dof_tools.h>
 
+#include <viscoplastic_contact/base/messages.h>
 #include <viscoplastic_contact/discretization/admissible_space.h>
 #include <viscoplastic_contact/discretization/conditions_at_nodes.h>
 #include <viscoplastic_contact/mesh/cell_order.h>
@@ -87,14 +88,13 @@ namespace Viscoplastic
                                                            of_absent));
                 continue;
               }
-            AssertThrow(Utilities::MPI::max(result[id].size(),
-                                            dof_handler.get_communicator()) > 0,
-                        ExcMessage("Nothing of boundary " +
-                                   std::to_string(*condition.against) +
-                                   " lies opposite to the nodes of boundary " +
-                                   std::to_string(id) +
-                                   " along its normal, though 'Boundary " +
-                                   std::to_string(id) + "/Against' says so."));
+            if (Utilities::MPI::max(result[id].size(),
+                                    dof_handler.get_communicator()) <= 0)
+              refuse(
+                "Nothing of boundary " + std::to_string(*condition.against) +
+                " lies opposite to the nodes of boundary " +
+                std::to_string(id) + " along its normal, though 'Boundary " +
+                std::to_string(id) + "/Against' says so.");
           }
       return result;
     }
@@ -205,11 +205,11 @@ namespace Viscoplastic
                     0)
     , node_position(dof_handler.n_locally_owned_dofs() / dim)
   {
-    AssertThrow(Utilities::MPI::max(dof_handler.n_dofs(), communicator) <
-                  static_cast<types::global_dof_index>(
-                    std::numeric_limits<int>::max()),
-                ExcMessage("The mesh has more than 2^31 degrees of freedom, "
-                           "which this build of Trilinos cannot index."));
+    if (!(Utilities::MPI::max(dof_handler.n_dofs(), communicator) <
+          static_cast<types::global_dof_index>(
+            std::numeric_limits<int>::max())))
+      refuse("The mesh has more than 2^31 degrees of freedom, which this build "
+             "of Trilinos cannot index.");
     hanging_cartesian.reinit(relevant);
     DoFTools::make_hanging_node_constraints(dof_handler, hanging_cartesian);
     hanging_cartesian.close();

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <viscoplastic_contact/base/largest_place.h>
+#include <viscoplastic_contact/base/messages.h>
 #include <viscoplastic_contact/base/number_range.h>
 #include <viscoplastic_contact/contact/contact_solver.h>
 #include <viscoplastic_contact/discretization/compatibility.h>
@@ -137,8 +138,8 @@ namespace Viscoplastic
         << ": 'Gap' and 'Foundation displacement' add up to less than "
            "'Initial state/Displacement' takes of it; let them begin with "
            "a gap of zero or more, or set 'Initial state/Equilibrate'.";
-      AssertThrow(deepest <= std::max(1e-8 * size, 0.1 * chords),
-                  ExcMessage(message.str()));
+      if (!(deepest <= std::max(1e-8 * size, 0.1 * chords)))
+        refuse(message.str());
     }
 
 

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <viscoplastic_contact/base/messages.h>
 #include <viscoplastic_contact/discretization/conditions_at_nodes.h>
 
 namespace Viscoplastic
@@ -65,9 +66,9 @@ namespace Viscoplastic
     const std::size_t n_boundaries = listed.size();
     for (const Support<dim> &support : scene.supports)
       listed.push_back(&support.condition);
-    AssertThrow(listed.size() <= 52,
-                ExcMessage("At most 52 boundary ids and supports may carry "
-                           "displacement or contact conditions."));
+    if (listed.size() > 52)
+      refuse("At most 52 boundary ids and supports may carry displacement or "
+             "contact conditions.");
 
     // Conditions of an absent material do not hold the nodes that it shares
     // with the body.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <deal.II/base/quadrature_lib.h>
 
+#include <viscoplastic_contact/base/messages.h>
 #include <viscoplastic_contact/discretization/bulk_system.h>
 #include <viscoplastic_contact/discretization/initial_state.h>
 #include <viscoplastic_contact/discretization/springs.h>
@@ -249,7 +250,7 @@ namespace Viscoplastic
                    "prescribed at t = 0 by "
                 << contradiction
                 << "; let them agree, or set 'Initial state/Equilibrate'.";
-        AssertThrow(false, ExcMessage(message.str()));
+        refuse(message.str());
       }
 
     State<dim> state;

@@ -3,6 +3,7 @@
 #include <deal.II/base/quadrature_lib.h>
 #include <deal.II/fe/fe_values.h>
 
+#include <viscoplastic_contact/base/messages.h>
 #include <viscoplastic_contact/base/types.h>
 #include <viscoplastic_contact/discretization/admissible_space.h>
 #include <viscoplastic_contact/discretization/seen_motions.h>
@@ -351,9 +352,8 @@ namespace Viscoplastic
             if (motions.empty())
               free_motions = free;
           }
-        AssertThrow(
-          motions.empty(),
-          ExcMessage(refusal(scene, parts.n, motions, may_be_held_by_contact)));
+        if (!motions.empty())
+          refuse(refusal(scene, parts.n, motions, may_be_held_by_contact));
       }
   }
 

@@ -46,7 +46,7 @@ namespace Viscoplastic
               << "), t = " << t << ", but '" << material.section
               << "/Activation energy' asks for absolute temperatures, in "
                  "kelvin: add 273.15 to degrees Celsius.";
-      AssertThrow(false, ExcMessage(message.str()));
+      refuse(message.str());
     }
   } // namespace
 

@@ -236,7 +236,8 @@ namespace Viscoplastic
     {
       const std::string text =
         Utilities::MPI::broadcast(communicator, complaint);
-      AssertThrow(text.empty(), ExcMessage(text));
+      if (!text.empty())
+        refuse(text);
     }
   } // namespace
 

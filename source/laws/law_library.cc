@@ -37,18 +37,15 @@ namespace Viscoplastic
         std::all_of(name.begin(), name.end(), [](const unsigned char c) {
           return std::isalnum(c) != 0 || c == '_';
         });
-      AssertThrow(is_word,
-                  ExcMessage(
-                    "the shared library '" + file +
-                    "' has a law with the name '" + excerpt(name) +
-                    "'; names of laws have letters, digits and underscores."));
+      if (!is_word)
+        refuse("the shared library '" + file + "' has a law with the name '" +
+               excerpt(name) +
+               "'; names of laws have letters, digits and underscores.");
       const std::string taken = '|' + viscoplastic_law_names(others) + '|';
-      AssertThrow(taken.find('|' + name + '|') == std::string::npos,
-                  ExcMessage(
-                    "the shared library '" + file +
-                    "' has a law with the name '" + name +
-                    "', which another law has; the laws without it are " +
-                    viscoplastic_law_names(others) + "."));
+      if (taken.find('|' + name + '|') != std::string::npos)
+        refuse("the shared library '" + file + "' has a law with the name '" +
+               name + "', which another law has; the laws without it are " +
+               viscoplastic_law_names(others) + ".");
     }
   } // namespace
 
@@ -62,38 +59,34 @@ namespace Viscoplastic
     // RTLD_NOW resolves all symbols, so that a missing function cannot end a
     // run later. The library stays loaded, since laws are used until the end.
     void *library = dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL);
-    AssertThrow(library != nullptr,
-                ExcMessage(
-                  "the shared library '" + file +
-                  "' cannot be loaded: " + excerpt(loader_message(file), 300) +
-                  ". Laws have to be built for this version of the program."));
+    if (library == nullptr)
+      refuse("the shared library '" + file +
+             "' cannot be loaded: " + excerpt(loader_message(file), 300) +
+             ". Laws have to be built for this version of the program.");
 
     const auto interface = reinterpret_cast<const char *(*)()>(
       dlsym(library, "viscoplastic_contact_law_interface"));
     const auto describe =
       reinterpret_cast<void (*)(std::vector<LawDescription> &)>(
         dlsym(library, "viscoplastic_contact_describe_laws"));
-    AssertThrow(
-      interface != nullptr && describe != nullptr,
-      ExcMessage(
+    if (interface == nullptr || describe == nullptr)
+      refuse(
         "the shared library '" + file +
-        "' has no laws: VISCOPLASTIC_LAW_LIBRARY is missing in its source."));
+        "' has no laws: VISCOPLASTIC_LAW_LIBRARY is missing in its source.");
     const char       *version = interface();
     const std::string theirs  = version == nullptr ? "0" : version;
-    AssertThrow(theirs == VISCOPLASTIC_CONTACT_LAW_INTERFACE,
-                ExcMessage("the shared library '" + file +
-                           "' was built for version " + excerpt(theirs) +
-                           " of the laws' interface, but this program has " +
-                           VISCOPLASTIC_CONTACT_LAW_INTERFACE +
-                           "; build it again."));
+    if (theirs != VISCOPLASTIC_CONTACT_LAW_INTERFACE)
+      refuse("the shared library '" + file + "' was built for version " +
+             excerpt(theirs) +
+             " of the laws' interface, but this program has " +
+             VISCOPLASTIC_CONTACT_LAW_INTERFACE + "; build it again.");
     std::vector<LawDescription> laws;
     describe(laws);
     for (const LawDescription &law : laws)
-      AssertThrow(
-        law.declare && law.make,
-        ExcMessage(
-          "the law '" + excerpt(law.name) + "' of the shared library '" + file +
-          "' has no function 'declare' or 'make' in its description."));
+      if (!law.declare || !law.make)
+        refuse("the law '" + excerpt(law.name) + "' of the shared library '" +
+               file +
+               "' has no function 'declare' or 'make' in its description.");
     return laws;
   }
 

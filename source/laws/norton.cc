@@ -121,13 +121,11 @@ namespace Viscoplastic
                 "continued by its tangent: well above the stress you "
                 "expect. It has to be given. Unit: stress."}}),
             [](const LawSection &section) {
-              AssertThrow(
-                !section.prm.get("Stress cap").empty(),
-                ExcMessage(
-                  "'" + section.path +
-                  "/Stress cap' is not given; beyond this von Mises stress the "
-                  "power law is continued linearly, so choose one well above "
-                  "the stress you expect."));
+              if (section.prm.get("Stress cap").empty())
+                refuse("'" + section.path +
+                       "/Stress cap' is not given; beyond this von Mises "
+                       "stress the power law is continued linearly, so choose "
+                       "one well above the stress you expect.");
               return std::make_unique<Norton>(section);
             }};
   }

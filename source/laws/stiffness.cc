@@ -73,14 +73,12 @@ namespace Viscoplastic
                             column = std::to_string(j + 1);
           // The tolerance allows for rounding in the text of the matrix. The
           // comparison also refuses NaN.
-          AssertThrow(std::fabs(voigt(i, j) - voigt(j, i)) <= 1e-8 * scale &&
-                        std::isfinite(scale),
-                      ExcMessage("The Voigt matrix has " +
-                                 as_text(voigt(i, j)) + " in row " + row +
-                                 ", column " + column + ", and " +
-                                 as_text(voigt(j, i)) + " in row " + column +
-                                 ", column " + row +
-                                 "; it must be symmetric and finite."));
+          if (!(std::fabs(voigt(i, j) - voigt(j, i)) <= 1e-8 * scale) ||
+              !std::isfinite(scale))
+            refuse("The Voigt matrix has " + as_text(voigt(i, j)) + " in row " +
+                   row + ", column " + column + ", and " +
+                   as_text(voigt(j, i)) + " in row " + column + ", column " +
+                   row + "; it must be symmetric and finite.");
         }
     require_in_range("The norm of the Voigt matrix",
                      scale,
@@ -97,12 +95,11 @@ namespace Viscoplastic
                        [axes[j].second] = (voigt(i, j) + voigt(j, i)) / 2;
 
     const Spectrum eigen = spectrum(data->stiffness);
-    AssertThrow(
-      eigen.values[0] > 1e-12 * eigen.values[5],
-      ExcMessage("The smallest eigenvalue of the elastic tensor that the Voigt "
-                 "matrix gives is " +
-                 as_text(eigen.values[0]) + ", the largest " +
-                 as_text(eigen.values[5]) + "; it must be positive definite."));
+    if (!(eigen.values[0] > 1e-12 * eigen.values[5]))
+      refuse("The smallest eigenvalue of the elastic tensor that the Voigt "
+             "matrix gives is " +
+             as_text(eigen.values[0]) + ", the largest " +
+             as_text(eigen.values[5]) + "; it must be positive definite.");
     for (unsigned int mode = 0; mode < 6; ++mode)
       data->compliance += outer_product(eigen.modes[mode], eigen.modes[mode]) /
                           eigen.values[mode];

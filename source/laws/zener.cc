@@ -212,11 +212,10 @@ namespace Viscoplastic
              {section, "Relaxation time", LawParameter::Range::positive}})
       {
         for (const auto modulus : {youngs_modulus, poissons_ratio})
-          AssertThrow(!parameters[modulus].depends_on_time(),
-                      ExcMessage(
-                        "'" + parameters[modulus].get_name() +
-                        "' depends on t; elastic moduli must be functions of "
-                        "position only."));
+          if (parameters[modulus].depends_on_time())
+            refuse("'" + parameters[modulus].get_name() +
+                   "' depends on t; elastic moduli must be functions of "
+                   "position only.");
       }
 
       void

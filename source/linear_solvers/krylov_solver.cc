@@ -3,6 +3,7 @@
 #include <deal.II/lac/solver_cg.h>
 #include <deal.II/lac/solver_gmres.h>
 
+#include <viscoplastic_contact/base/messages.h>
 #include <viscoplastic_contact/linear_solvers/krylov_solver.h>
 #include <viscoplastic_contact/linear_solvers/residual_rounding.h>
 
@@ -302,14 +303,13 @@ namespace Viscoplastic
       }
     catch (const SolverControl::NoConvergence &failure)
       {
-        AssertThrow(std::isfinite(failure.last_residual),
-                    ExcMessage("The conjugate gradient method met a value that "
-                               "is not finite."));
-        AssertThrow(failure.last_residual < 0.5 * size,
-                    ExcMessage(
-                      "The conjugate gradient method does not "
-                      "converge; for nearly incompressible bodies and flat "
-                      "cells use the direct linear solver, on one rank."));
+        if (!std::isfinite(failure.last_residual))
+          refuse(
+            "The conjugate gradient method met a value that is not finite.");
+        if (!(failure.last_residual < 0.5 * size))
+          refuse("The conjugate gradient method does not converge; for nearly "
+                 "incompressible bodies and flat cells use the direct linear "
+                 "solver, on one rank.");
         // The result reduces the error: the next correction starts from it.
       }
     solver.restriction.tilt_motions(truncation, w);
@@ -456,7 +456,7 @@ namespace Viscoplastic
     std::ostringstream message;
     message << "The linear solver stagnates above the relative error "
             << tolerance << ".";
-    AssertThrow(false, ExcMessage(message.str()));
+    refuse(message.str());
     return {};
   }
 } // namespace Viscoplastic

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <viscoplastic_contact/base/linear_algebra.h>
+#include <viscoplastic_contact/base/messages.h>
 #include <viscoplastic_contact/linear_solvers/schur_solver.h>
 
 #include <cholmod.h>
@@ -35,16 +36,14 @@ namespace Viscoplastic
     void
     check(const std::string &doing) const
     {
-      AssertThrow(common.status != CHOLMOD_NOT_POSDEF,
-                  ExcMessage("The elastic matrix is not positive definite in "
-                             "the direct solver; the elastic data or the mesh "
-                             "are degenerate."));
-      AssertThrow(common.status >= CHOLMOD_OK,
-                  ExcMessage("The direct solver failed " + doing +
-                             (common.status == CHOLMOD_OUT_OF_MEMORY ?
-                                ": memory is short" :
-                                "") +
-                             "; use the multigrid solver."));
+      if (common.status == CHOLMOD_NOT_POSDEF)
+        refuse("The elastic matrix is not positive definite in the direct "
+               "solver; the elastic data or the mesh are degenerate.");
+      if (!(common.status >= CHOLMOD_OK))
+        refuse(
+          "The direct solver failed " + doing +
+          (common.status == CHOLMOD_OUT_OF_MEMORY ? ": memory is short" : "") +
+          "; use the multigrid solver.");
     }
 
     /// Return the upper triangle by columns (= the lower one by rows) of the

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <deal.II/base/exceptions.h>
 
+#include <viscoplastic_contact/base/messages.h>
 #include <viscoplastic_contact/linear_solvers/solver_choice.h>
 
 #include <cmath>
@@ -130,12 +131,10 @@ namespace Viscoplastic
   choose_bulk_solver(const SolverDemand &demand)
   {
     const LinearSolver choice = demand.choice;
-    AssertThrow(choice != LinearSolver::direct || demand.n_ranks == 1,
-                ExcMessage(
-                  "The direct linear solver works on one MPI rank, but "
-                  "the run has " +
-                  std::to_string(demand.n_ranks) +
-                  "; let it be multigrid or automatic."));
+    if (choice == LinearSolver::direct && demand.n_ranks != 1)
+      refuse(
+        "The direct linear solver works on one MPI rank, but the run has " +
+        std::to_string(demand.n_ranks) + "; let it be multigrid or automatic.");
     if (choice == LinearSolver::direct ||
         (choice == LinearSolver::automatic && demand.n_ranks == 1 &&
          prefer_direct(demand)))

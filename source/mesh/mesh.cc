@@ -93,22 +93,18 @@ namespace Viscoplastic
       if (!mapped && !rotated && !shifted)
         return;
       for (const types::manifold_id id : triangulation.get_manifold_ids())
-        AssertThrow(
-          id == numbers::flat_manifold_id,
-          ExcMessage(
-            "'Geometry/Coordinates', 'Rotation angle' and 'Translation' "
-            "apply to meshes with straight edges only; '" +
-            geometry.generator + "' has curved ones."));
+        if (id != numbers::flat_manifold_id)
+          refuse("'Geometry/Coordinates', 'Rotation angle' and 'Translation' "
+                 "apply to meshes with straight edges only; '" +
+                 geometry.generator + "' has curved ones.");
       if (mapped)
         {
           const VectorExpression<dim> coordinates(geometry.coordinates,
                                                   dim,
                                                   "Geometry/Coordinates");
-          AssertThrow(
-            !coordinates.depends_on_time(),
-            ExcMessage(
-              "'Geometry/Coordinates' depends on t, but the mesh does not "
-              "change with time."));
+          if (coordinates.depends_on_time())
+            refuse("'Geometry/Coordinates' depends on t, but the mesh does not "
+                   "change with time.");
           GridTools::transform(
             [&coordinates](const Point<dim> &x) {
               return Point<dim>(coordinates.vector(x, 0.));
@@ -124,9 +120,8 @@ namespace Viscoplastic
             {
               const Point<3> axis = parse_point<3>(geometry.rotation_axis,
                                                    "Geometry/Rotation axis");
-              AssertThrow(axis.norm() > 0.,
-                          ExcMessage(
-                            "'Geometry/Rotation axis' must not be zero."));
+              if (!(axis.norm() > 0.))
+                refuse("'Geometry/Rotation axis' must not be zero.");
               GridTools::rotate(Tensor<1, 3>(axis / axis.norm()),
                                 angle,
                                 triangulation);

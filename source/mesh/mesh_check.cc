@@ -150,15 +150,13 @@ namespace Viscoplastic
                 }
           }
       }
-    AssertThrow(
-      n_parts == 1,
-      ExcMessage(
-        "The mesh consists of " + std::to_string(n_parts) +
-        " parts that share no faces, e.g. the cells with the centers (" +
-        as_text(first) + ") and (" + as_text(other) +
-        ") are not connected. Bodies of their own need contact with each "
-        "other ('Against'); the cells of one body have their nodes in "
-        "common (merge nodes that are at the same place)."));
+    if (n_parts != 1)
+      refuse("The mesh consists of " + std::to_string(n_parts) +
+             " parts that share no faces, e.g. the cells with the centers (" +
+             as_text(first) + ") and (" + as_text(other) +
+             ") are not connected. Bodies of their own need contact with each "
+             "other ('Against'); the cells of one body have their nodes in "
+             "common (merge nodes that are at the same place).");
   }
 
 

@@ -96,12 +96,11 @@ namespace Viscoplastic
             }
         }
       constexpr unsigned int most = 10000000;
-      AssertThrow(!is_negative && total <= most,
-                  ExcMessage(
-                    "'Geometry/Arguments' = " + geometry.arguments +
-                    " asks for " + (is_negative ? numbers : as_text(total)) +
-                    " cells; possible are 1 to " + std::to_string(most) +
-                    " (refinements make more)."));
+      if (is_negative || !(total <= most))
+        refuse("'Geometry/Arguments' = " + geometry.arguments + " asks for " +
+               (is_negative ? numbers : as_text(total)) +
+               " cells; possible are 1 to " + std::to_string(most) +
+               " (refinements make more).");
       check_mesh_size(dim,
                       total,
                       total,
@@ -142,11 +141,9 @@ namespace Viscoplastic
         return; // deal.II reports it
       const auto lists = Utilities::split_string_list(arguments[0], ';');
       const auto refuse_unless = [&](const bool good, const std::string &what) {
-        AssertThrow(good,
-                    ExcMessage(
-                      "'Geometry/Arguments' = " + excerpt(geometry.arguments) +
-                      ": '" + excerpt(arguments[0]) + "' has to be " + what +
-                      "."));
+        if (!good)
+          refuse("'Geometry/Arguments' = " + excerpt(geometry.arguments) +
+                 ": '" + excerpt(arguments[0]) + "' has to be " + what + ".");
       };
       const std::string n = std::to_string(dim);
       if (lists.size() < 2)
@@ -262,11 +259,9 @@ namespace Viscoplastic
                  "' refuses the arguments '" + excerpt(geometry.arguments) +
                  "': " + why);
         }
-      AssertThrow(
-        triangulation.all_reference_cells_are_hyper_cube(),
-        ExcMessage(
-          "The mesh must consist of quadrilaterals or hexahedra; simplices "
-          "are not supported."));
+      if (!triangulation.all_reference_cells_are_hyper_cube())
+        refuse("The mesh must consist of quadrilaterals or hexahedra; "
+               "simplices are not supported.");
     }
 
 
@@ -279,12 +274,11 @@ namespace Viscoplastic
                     const std::vector<std::string>            &arguments,
                     parallel::distributed::Triangulation<dim> &triangulation)
     {
-      AssertThrow(generators.size() == arguments.size(),
-                  ExcMessage("'Geometry/Generator' has " +
-                             std::to_string(generators.size()) +
-                             " bodies, but 'Arguments' are those of " +
-                             std::to_string(arguments.size()) +
-                             "; both are lists separated by `|'."));
+      if (generators.size() != arguments.size())
+        refuse("'Geometry/Generator' has " + std::to_string(generators.size()) +
+               " bodies, but 'Arguments' are those of " +
+               std::to_string(arguments.size()) +
+               "; both are lists separated by `|'.");
       std::vector<Point<dim>>                     vertices;
       std::vector<CellData<dim>>                  cells;
       SubCellData                                 faces;
@@ -304,13 +298,11 @@ namespace Viscoplastic
               {
                 new_id[id] = manifolds.size();
                 manifolds.push_back(body.get_manifold(id).clone());
-                AssertThrow(
-                  dynamic_cast<const TransfiniteInterpolationManifold<dim> *>(
-                    manifolds.back().get()) == nullptr,
-                  ExcMessage(
-                    "The mesh generator '" + excerpt(generators[b]) +
-                    "' cannot be one of several bodies, since it interpolates "
-                    "between curved edges; use a mesh file."));
+                if (dynamic_cast<const TransfiniteInterpolationManifold<dim> *>(
+                      manifolds.back().get()) != nullptr)
+                  refuse("The mesh generator '" + excerpt(generators[b]) +
+                         "' cannot be one of several bodies, since it "
+                         "interpolates between curved edges; use a mesh file.");
               }
           auto [body_vertices, body_cells, body_faces] =
             GridTools::get_coarse_mesh_description(body);

@@ -53,13 +53,12 @@ namespace Viscoplastic
             const Point<dim> x = object.intermediate_point(
               xi + 0.99 * (GeometryInfo<structdim>::unit_cell_vertex(v) - xi));
             const unsigned int id_here = value(x, old_id);
-            AssertThrow(id_here == id,
-                        ExcMessage("'" + entry + "' gives " +
-                                   std::to_string(id) + " and " +
-                                   std::to_string(id_here) + " in the " + what +
-                                   " with the center (" + as_text(center) +
-                                   "); an id may change only between " + what +
-                                   "s of the coarse mesh."));
+            if (id_here != id)
+              refuse("'" + entry + "' gives " + std::to_string(id) + " and " +
+                     std::to_string(id_here) + " in the " + what +
+                     " with the center (" + as_text(center) +
+                     "); an id may change only between " + what +
+                     "s of the coarse mesh.");
           }
         return id;
       }

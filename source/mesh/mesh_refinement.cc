@@ -33,20 +33,18 @@ namespace Viscoplastic
         {
           std::smatch match;
           // std::regex needs a stack as deep as the text is long.
-          AssertThrow(
-            part.size() < 100 && std::regex_match(part, match, pair),
-            ExcMessage(entry +
-                       " consists of `boundary id: times' separated by commas, "
-                       "but has '" +
-                       excerpt(part) + "'."));
+          if (part.size() >= 100 || !std::regex_match(part, match, pair))
+            refuse(entry +
+                   " consists of `boundary id: times' separated by commas, but "
+                   "has '" +
+                   excerpt(part) + "'.");
           const types::boundary_id id = std::stoul(match[1]);
-          AssertThrow(ids.count(id) == 1,
-                      ExcMessage(
-                        entry + " names the boundary id " + std::to_string(id) +
-                        ", but the mesh has the ids " + list(ids) + "."));
-          AssertThrow(result.emplace(id, std::stoul(match[2])).second,
-                      ExcMessage(entry + " names the boundary id " +
-                                 std::to_string(id) + " twice."));
+          if (ids.count(id) != 1)
+            refuse(entry + " names the boundary id " + std::to_string(id) +
+                   ", but the mesh has the ids " + list(ids) + ".");
+          if (!(result.emplace(id, std::stoul(match[2])).second))
+            refuse(entry + " names the boundary id " + std::to_string(id) +
+                   " twice.");
         }
       return result;
     }
@@ -99,12 +97,11 @@ namespace Viscoplastic
     for (const auto &pair : times)
       local = std::max(local, pair.second);
     const unsigned int n_levels = 18;
-    AssertThrow(global <= n_levels && global + local <= n_levels,
-                ExcMessage(
-                  "'Geometry/Global refinements' = " + std::to_string(global) +
-                  " with " + std::to_string(local) +
-                  " further ones at boundaries; together, " +
-                  std::to_string(n_levels) + " are possible."));
+    if (!(global <= n_levels) || !(global + local <= n_levels))
+      refuse("'Geometry/Global refinements' = " + std::to_string(global) +
+             " with " + std::to_string(local) +
+             " further ones at boundaries; together, " +
+             std::to_string(n_levels) + " are possible.");
     const MPI_Comm comm = triangulation.get_communicator();
     if (global > 0)
       check_mesh_size(dim,

@@ -78,20 +78,18 @@ namespace Viscoplastic
     std::ostringstream message;
     message << cause << " would make about " << n_cells << " cells and "
             << n_unknowns << " unknowns, ";
-    AssertThrow(n_unknowns <= most,
-                ExcMessage(message.str() + "more than can be numbered (" +
-                           std::to_string(std::numeric_limits<int>::max()) +
-                           ")."));
-    AssertThrow(
-      n_entries / n_ranks <= most,
-      ExcMessage(
+    if (!(n_unknowns <= most))
+      refuse(message.str() + "more than can be numbered (" +
+             std::to_string(std::numeric_limits<int>::max()) + ").");
+    if (!(n_entries / n_ranks <= most))
+      refuse(
         message.str() + "which is too much for " +
         (n_ranks == 1 ? "one MPI rank" :
                         std::to_string(n_ranks) + " MPI ranks") +
-        ", whose matrix would have more entries than can be numbered; "
-        "take at least " +
+        ", whose matrix would have more entries than can be numbered; take at "
+        "least " +
         std::to_string(static_cast<unsigned int>(std::ceil(n_entries / most))) +
-        "."));
+        ".");
 
     // Measured: mesh and spaces take 760 (2D) and 1280 bytes (3D) a cell. The
     // solver takes several times as much: only runs that must fail are refused.
@@ -112,8 +110,8 @@ namespace Viscoplastic
     else
       message << " GB; --check says what a mesh needs.";
     // Memory may differ between computers, but all ranks have to throw.
-    AssertThrow(!Utilities::MPI::logical_or(n_bytes > n_possible, communicator),
-                ExcMessage(message.str()));
+    if (Utilities::MPI::logical_or(n_bytes > n_possible, communicator))
+      refuse(message.str());
   }
 
 

@@ -38,9 +38,9 @@ namespace Viscoplastic
     for (const std::string &library :
          Utilities::split_string_list(line->value, ','))
       {
-        AssertThrow(!library.empty(),
-                    ExcMessage(line->origin() + ": '" + shared_libraries_entry +
-                               "' has an empty name between commas."));
+        if (library.empty())
+          refuse(line->origin() + ": '" + shared_libraries_entry +
+                 "' has an empty name between commas.");
         shared_libraries.push_back(line->locate(library));
       }
     try
@@ -157,15 +157,13 @@ namespace Viscoplastic
           const std::string path = line.section + line.name;
           const Tree &entry = declared.get_child(Tree::path_type(path, '/'));
           // Defaults are allowed, since the record of a run contains them.
-          AssertThrow(
-            line.value == entry.get<std::string>("default_value"),
-            ExcMessage(
-              line.origin() + ": '" + path +
-              "' cannot be set beside 'Material " +
-              std::to_string(materials.begin()->first) +
-              "'; where materials have numbers, each is described in its "
-              "own subsection, and 'Material' has only 'Volumetric "
-              "integration' and 'Stress history'."));
+          if (line.value != entry.get<std::string>("default_value"))
+            refuse(line.origin() + ": '" + path +
+                   "' cannot be set beside 'Material " +
+                   std::to_string(materials.begin()->first) +
+                   "'; where materials have numbers, each is described in its "
+                   "own subsection, and 'Material' has only 'Volumetric "
+                   "integration' and 'Stress history'.");
         }
   }
 
@@ -200,37 +198,28 @@ namespace Viscoplastic
     if (refinement.strategy == RefinementStrategy::automatic)
       refinement.strategy =
         has_tolerance ? RefinementStrategy::residual : RefinementStrategy::none;
-    AssertThrow(
-      error_control.quantity.empty() || error_control.error_estimator,
-      ExcMessage(
-        "'Error control/Quantity' needs the estimate of the error; set "
-        "'Error control/Error bar' = true."));
-    AssertThrow(
-      error_control.quantity.empty() ||
-        refinement.strategy != RefinementStrategy::kelly,
-      ExcMessage("'Error control/Quantity' refines by residuals; set 'Mesh "
-                 "refinement/Strategy' = residual, or none for a fixed mesh."));
+    if (!error_control.quantity.empty() && !error_control.error_estimator)
+      refuse("'Error control/Quantity' needs the estimate of the error; set "
+             "'Error control/Error bar' = true.");
+    if (!error_control.quantity.empty() &&
+        refinement.strategy == RefinementStrategy::kelly)
+      refuse("'Error control/Quantity' refines by residuals; set 'Mesh "
+             "refinement/Strategy' = residual, or none for a fixed mesh.");
     if (!has_tolerance)
       return;
-    AssertThrow(
-      error_control.tolerance < 1.,
-      ExcMessage(
-        "'Error control/Tolerance' = 1 lets the error be as large as the "
-        "solution; 1 % is 0.01."));
-    AssertThrow(
-      error_control.error_estimator,
-      ExcMessage(
-        "'Error control/Tolerance' needs an estimate of the error; set "
-        "'Error control/Error bar' = true."));
-    AssertThrow(!step_control.is_on(),
-                ExcMessage(
-                  "'Error control/Tolerance' chooses the steps, too; set 'Step "
-                  "control/Tolerance' = 0."));
-    AssertThrow(
-      refinement.strategy != RefinementStrategy::kelly,
-      ExcMessage(
+    if (!(error_control.tolerance < 1.))
+      refuse("'Error control/Tolerance' = 1 lets the error be as large as the "
+             "solution; 1 % is 0.01.");
+    if (!error_control.error_estimator)
+      refuse("'Error control/Tolerance' needs an estimate of the error; set "
+             "'Error control/Error bar' = true.");
+    if (step_control.is_on())
+      refuse("'Error control/Tolerance' chooses the steps, too; set 'Step "
+             "control/Tolerance' = 0.");
+    if (refinement.strategy == RefinementStrategy::kelly)
+      refuse(
         "'Error control/Tolerance' refines by the estimate of the error; set "
-        "'Mesh refinement/Strategy' = residual, or none for a fixed mesh."));
+        "'Mesh refinement/Strategy' = residual, or none for a fixed mesh.");
   }
 
 
@@ -275,11 +264,10 @@ namespace Viscoplastic
       locate_mesh_file(lines);
     resolve_automatic_choices();
     refinement.check();
-    AssertThrow(
-      solver.contact_tolerance == 0. || solver.contact_tolerance >= 1e-14,
-      ExcMessage(
+    if (solver.contact_tolerance != 0. && !(solver.contact_tolerance >= 1e-14))
+      refuse(
         "'Solver/Contact tolerance' = " + as_text(solver.contact_tolerance) +
-        " is below rounding; it must be 0 or lie between 1e-14 and 0.1."));
+        " is below rounding; it must be 0 or lie between 1e-14 and 0.1.");
   }
 
 

@@ -45,9 +45,8 @@ namespace Viscoplastic
                                           "is binary, not a parameter file" :
         input ? "is too long for a parameter file" :
                 "";
-      AssertThrow(fault.empty(),
-                  ExcMessage(called + " '" + excerpt(file, 200) + "' " + fault +
-                             '.'));
+      if (!fault.empty())
+        refuse(called + " '" + excerpt(file, 200) + "' " + fault + '.');
       // Some editors begin a file with a byte order mark.
       if (text.compare(0, 3, "\xEF\xBB\xBF") == 0)
         text.erase(0, 3);
@@ -83,12 +82,11 @@ namespace Viscoplastic
           (kind != "Boundary" && kind != "Material" && kind != "Table"))
         return name;
       const std::string id = Utilities::trim(name.substr(kind.size()));
-      AssertThrow(Patterns::Integer(0, largest_id).match(id),
-                  ExcMessage(
-                    origin + ": '" + excerpt(id) + "' in the subsection '" +
-                    excerpt(name) +
-                    "' is no id; it must be a whole number from 0 to " +
-                    std::to_string(largest_id) + "."));
+      if (!Patterns::Integer(0, largest_id).match(id))
+        refuse(origin + ": '" + excerpt(id) + "' in the subsection '" +
+               excerpt(name) +
+               "' is no id; it must be a whole number from 0 to " +
+               std::to_string(largest_id) + ".");
       return kind + ' ' + std::to_string(std::stoul(id));
     }
 
@@ -121,13 +119,13 @@ namespace Viscoplastic
         std::istringstream input(content(file, caller));
         std::error_code    error;
         open_files.push_back(fs::weakly_canonical(file, error));
-        AssertThrow(std::find(open_files.begin(),
-                              open_files.end() - 1,
-                              open_files.back()) == open_files.end() - 1,
-                    ExcMessage(caller + " '" + file + "' includes itself."));
-        AssertThrow(++n_files <= max_files,
-                    ExcMessage(caller + " '" + file + "' is one of more than " +
-                               std::to_string(max_files) + "."));
+        if (std::find(open_files.begin(),
+                      open_files.end() - 1,
+                      open_files.back()) != open_files.end() - 1)
+          refuse(caller + " '" + file + "' includes itself.");
+        if (!(++n_files <= max_files))
+          refuse(caller + " '" + file + "' is one of more than " +
+                 std::to_string(max_files) + ".");
         read(input, file, 1);
         open_files.pop_back();
       }
@@ -137,10 +135,9 @@ namespace Viscoplastic
       {
         const std::string where  = "--set '" + excerpt(text) + "'";
         const std::size_t equals = text.find('=');
-        AssertThrow(equals != std::string::npos,
-                    ExcMessage(
-                      where +
-                      ": there is no `='; it must be 'Section/Entry=value'."));
+        if (equals == std::string::npos)
+          refuse(where +
+                 ": there is no `='; it must be 'Section/Entry=value'.");
         // Otherwise the record of the run could not be read again.
         AssertThrow(text.find_first_of("#\n\r") == std::string::npos &&
                       text.back() != '\\',
@@ -152,11 +149,9 @@ namespace Viscoplastic
         std::string        name, opening, assignment, closing;
         while (std::getline(names, name, '/'))
           {
-            AssertThrow(
-              !Utilities::trim(name).empty(),
-              ExcMessage(
-                where +
-                ": a name is empty; it must be 'Section/Entry=value'."));
+            if (Utilities::trim(name).empty())
+              refuse(where +
+                     ": a name is empty; it must be 'Section/Entry=value'.");
             if (!assignment.empty())
               {
                 opening += "subsection " + assignment + " #\n";
@@ -209,12 +204,11 @@ namespace Viscoplastic
             line.origin() + ": the included file");
         if ((word == "subsection" || word == "SUBSECTION") && !rest.empty())
           {
-            AssertThrow(
-              std::count(section.begin(), section.end(), '/') < max_depth,
-              ExcMessage(
-                line.origin() + ": more than " + std::to_string(max_depth) +
-                " subsections are inside each other; are there as many "
-                "lines `end' as lines `subsection'?"));
+            if (std::count(section.begin(), section.end(), '/') >= max_depth)
+              refuse(line.origin() + ": more than " +
+                     std::to_string(max_depth) +
+                     " subsections are inside each other; are there as many "
+                     "lines `end' as lines `subsection'?");
             line.name =
               section.empty() ? with_plain_id(rest, line.origin()) : rest;
             line.text       = "subsection " + line.name;
@@ -224,10 +218,10 @@ namespace Viscoplastic
           }
         else if (word == "end" || word == "END")
           {
-            AssertThrow(!source.open.empty(),
-                        ExcMessage(line.origin() +
-                                   ": there is no open subsection that this "
-                                   "`end' could close."));
+            if (source.open.empty())
+              refuse(
+                line.origin() +
+                ": there is no open subsection that this `end' could close.");
             section = source.open.back().section;
             source.open.pop_back();
           }
@@ -239,25 +233,20 @@ namespace Viscoplastic
             const std::string path = section + line.name;
             const auto [earlier, is_new] =
               source.set.emplace(path, line.number);
-            AssertThrow(
-              is_new,
-              ExcMessage(
-                "'" + excerpt(path) + "' is set twice in '" + source.name +
-                "', in lines " + std::to_string(earlier->second) + " and " +
-                std::to_string(line.number) +
-                "; keep one of them, or move one to a file of its own to "
-                "override the other."));
+            if (!is_new)
+              refuse("'" + excerpt(path) + "' is set twice in '" + source.name +
+                     "', in lines " + std::to_string(earlier->second) +
+                     " and " + std::to_string(line.number) +
+                     "; keep one of them, or move one to a file of its own to "
+                     "override the other.");
             // ParameterHandler takes braces for alternatives of several runs.
-            AssertThrow(line.value.find('{') == std::string::npos,
-                        ExcMessage(line.origin() + ": '" + excerpt(path) +
-                                   "' is '" + excerpt(line.value) +
-                                   "'; a value cannot contain `{'."));
-            AssertThrow(
-              is_utf8(line.value),
-              ExcMessage(
-                line.origin() + ": '" + excerpt(path) +
-                "' has bytes that are no text in UTF-8; save the file in "
-                "that encoding."));
+            if (line.value.find('{') != std::string::npos)
+              refuse(line.origin() + ": '" + excerpt(path) + "' is '" +
+                     excerpt(line.value) + "'; a value cannot contain `{'.");
+            if (!is_utf8(line.value))
+              refuse(line.origin() + ": '" + excerpt(path) +
+                     "' has bytes that are no text in UTF-8; save the file in "
+                     "that encoding.");
           }
         lines.push_back(std::move(line));
       }
@@ -274,14 +263,13 @@ namespace Viscoplastic
       number == 0 ? given : fs::path(source).parent_path() / given;
     std::error_code error;
     const fs::path  found = fs::exists(beside, error) ? beside : given;
-    AssertThrow(fs::exists(found, error),
-                ExcMessage(
-                  origin() + ": '" + section + name + "' is '" +
-                  excerpt(value) + "', but there is no such file" +
-                  (value == file ? "" : " as '" + excerpt(file) + "'") +
-                  (beside == given ? "." :
-                                     ", neither beside '" + source +
-                                       "' nor in the working directory.")));
+    if (!fs::exists(found, error))
+      refuse(origin() + ": '" + section + name + "' is '" + excerpt(value) +
+             "', but there is no such file" +
+             (value == file ? "" : " as '" + excerpt(file) + "'") +
+             (beside == given ? "." :
+                                ", neither beside '" + source +
+                                  "' nor in the working directory."));
     return fs::absolute(found).lexically_normal().string();
   }
 

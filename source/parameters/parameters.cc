@@ -328,7 +328,8 @@ namespace Viscoplastic
       "Role",
       role,
       "`clamped': u = 0; `displacement': given components of u; `traction': "
-      "sigma nu = F - p nu, also with springs; `free': sigma nu = 0; `symmetry': u_nu = 0 without "
+      "sigma nu = F - p nu, also with springs; `free': sigma nu = 0; "
+      "`symmetry': u_nu = 0 without "
       "friction on a flat piece; `contact': a piece of Gamma_3 with a "
       "friction law.");
     prm.add_parameter("Displacement",
@@ -446,7 +447,8 @@ namespace Viscoplastic
       "Foundation normal",
       foundation_normal,
       "For unilateral contact and normal compliance: the "
-      "direction from the body into the foundation, components separated by commas. "
+      "direction from the body into the foundation, components separated by "
+      "commas. "
       "Where it is empty, it is the outward normal of the piece, which "
       "has to be flat unless another body is opposite.",
       Patterns::List(Patterns::Double()));

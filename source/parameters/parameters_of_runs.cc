@@ -264,16 +264,14 @@ namespace Viscoplastic
   void
   RefinementParameters::check() const
   {
-    AssertThrow(minimal_level <= maximal_level,
-                ExcMessage("'Mesh refinement/Minimal level' = " +
-                           std::to_string(minimal_level) +
-                           " must not exceed 'Maximal level' = " +
-                           std::to_string(maximal_level) + "."));
-    AssertThrow(
-      refinement_fraction + coarsening_fraction <= 1.,
-      ExcMessage(
-        "'Mesh refinement/Refinement fraction' and 'Coarsening fraction' "
-        "must add up to at most 1."));
+    if (!(minimal_level <= maximal_level))
+      refuse(
+        "'Mesh refinement/Minimal level' = " + std::to_string(minimal_level) +
+        " must not exceed 'Maximal level' = " + std::to_string(maximal_level) +
+        ".");
+    if (!(refinement_fraction + coarsening_fraction <= 1.))
+      refuse("'Mesh refinement/Refinement fraction' and 'Coarsening fraction' "
+             "must add up to at most 1.");
   }
 
 

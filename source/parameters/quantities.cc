@@ -191,11 +191,10 @@ namespace Viscoplastic
                 const Units       &units)
   {
     for (const std::string name : {"\u00B0C", "degC"})
-      AssertThrow(text.find(name) == std::string::npos,
-                  ExcMessage(
-                    "'" + name +
-                    "' is no unit here: temperatures are absolute, 20 "
-                    "\u00B0C is `293.15 K', and differences are in K"));
+      if (text.find(name) != std::string::npos)
+        refuse("'" + name +
+               "' is no unit here: temperatures are absolute, 20 \u00B0C is "
+               "`293.15 K', and differences are in K");
     std::string result;
     std::size_t copied = 0;
     for (const NumberWithUnit &number : numbers_with_units(text))
@@ -203,9 +202,9 @@ namespace Viscoplastic
         const auto &[unit, end, unknown_name] = number.found;
         const std::string digits =
           text.substr(number.begin, number.end_of_number - number.begin);
-        AssertThrow(!number.lacks_blank,
-                    ExcMessage("a blank must stand between '" +
-                               excerpt(digits) + "' and its unit"));
+        if (number.lacks_blank)
+          refuse("a blank must stand between '" + excerpt(digits) +
+                 "' and its unit");
         if (!unknown_name.empty())
           refuse(
             "there is no unit '" + excerpt(unknown_name) + "'" +
@@ -213,19 +212,17 @@ namespace Viscoplastic
                          names_of_units(entry.is_wall_time ? entry.dimension :
                                                              std::nullopt),
                          "; units are " + enumeration(names_of_units(), 40)));
-        AssertThrow(
-          entry.is_wall_time || units.are_declared(),
-          ExcMessage("'" +
-                     excerpt(text.substr(number.begin, end - number.begin)) +
-                     "' has a unit, but the scene says none: declare `Length', "
-                     "`Time' and `Stress' in `subsection Units'"));
+        if (!entry.is_wall_time && !units.are_declared())
+          refuse("'" + excerpt(text.substr(number.begin, end - number.begin)) +
+                 "' has a unit, but the scene says none: declare `Length', "
+                 "`Time' and `Stress' in `subsection Units'");
         const double factor =
           unit.si / (entry.is_wall_time ? 1. : units.si(unit.dimension));
         // std::stod() is not used, since it throws for tiny numbers.
         const double value = factor * std::strtod(digits.c_str(), nullptr);
-        AssertThrow(std::isfinite(value),
-                    ExcMessage("'" + excerpt(digits) +
-                               "' leaves the range of floating-point numbers"));
+        if (!std::isfinite(value))
+          refuse("'" + excerpt(digits) +
+                 "' leaves the range of floating-point numbers");
         result += text.substr(copied, number.begin - copied) +
                   (std::abs(factor - 1.) < 1e-14 ? digits : shortest(value));
         copied = end;
@@ -236,7 +233,8 @@ namespace Viscoplastic
     if (!wrong.empty() && entry.exponent)
       wrong += " with '" + entry.entry_of_exponent +
                "' = " + shortest(*entry.exponent);
-    AssertThrow(wrong.empty(), ExcMessage(wrong));
+    if (!wrong.empty())
+      refuse(wrong);
     return result + text.substr(copied);
   }
 
@@ -289,9 +287,9 @@ namespace Viscoplastic
                 {
                   const std::size_t separator =
                     line.value.find_last_of(":,", number.begin);
-                  AssertThrow(separator == std::string::npos ||
-                                line.value[separator] == ',',
-                              ExcMessage("the number of steps has no unit"));
+                  if (separator != std::string::npos &&
+                      line.value[separator] != ',')
+                    refuse("the number of steps has no unit");
                 }
             const std::string value = without_units(line.value, *unit, units);
             as_written[path]        = line.value;

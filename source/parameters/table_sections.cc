@@ -74,8 +74,8 @@ namespace Viscoplastic
             const auto      text = std::filesystem::is_directory(file, none) ?
                                      std::nullopt :
                                      read_file_if_any(file);
-            AssertThrow(text,
-                        ExcMessage("the table '" + file + "' cannot be read."));
+            if (!text)
+              refuse("the table '" + file + "' cannot be read.");
             tables.push_back(std::make_shared<const DataTable>(
               *text,
               given,

@@ -57,23 +57,19 @@ namespace Viscoplastic
             {
               n_steps = 0; // refused below
             }
-          AssertThrow(
-            n_steps > 0,
-            ExcMessage(
-              "'Time/Phases': '" + excerpt(phase) +
-              "' is not of the form `end time: number of steps' with a "
-              "positive number of steps."));
+          if (!(n_steps > 0))
+            refuse("'Time/Phases': '" + excerpt(phase) +
+                   "' is not of the form `end time: number of steps' with a "
+                   "positive number of steps.");
           const std::string of_phase = " of '" + excerpt(phase) + "'";
-          AssertThrow(std::isfinite(end) && end > start,
-                      ExcMessage("'Time/Phases': the end time" + of_phase +
-                                 " must be finite and lie after " +
-                                 number(start, 15) + "."));
+          if (!std::isfinite(end) || !(end > start))
+            refuse("'Time/Phases': the end time" + of_phase +
+                   " must be finite and lie after " + number(start, 15) + ".");
           const double step = (end - start) / n_steps;
-          AssertThrow(
-            step > 1e-14 * end,
-            ExcMessage("'Time/Phases': the steps" + of_phase +
-                       " are shorter than 1e-14 of its end time, which is what "
-                       "rounding leaves of times; take fewer steps."));
+          if (!(step > 1e-14 * end))
+            refuse("'Time/Phases': the steps" + of_phase +
+                   " are shorter than 1e-14 of its end time, which is what "
+                   "rounding leaves of times; take fewer steps.");
           require_in_range("'Time/Phases': the end time" + of_phase,
                            end,
                            least_time,
@@ -83,18 +79,15 @@ namespace Viscoplastic
                            least_time,
                            largest_time);
           n_all_steps += n_steps;
-          AssertThrow(n_all_steps <= max_n_steps,
-                      ExcMessage(
-                        "'Time/Phases' has more than 1e9 steps up to '" +
-                        excerpt(phase) + "'; take fewer."));
+          if (!(n_all_steps <= max_n_steps))
+            refuse("'Time/Phases' has more than 1e9 steps up to '" +
+                   excerpt(phase) + "'; take fewer.");
           phases.push_back({start, end, static_cast<unsigned int>(n_steps)});
           start = end;
         }
-      AssertThrow(
-        !phases.empty(),
-        ExcMessage(
-          "'Time/Phases' is empty; give at least one phase as `end time: "
-          "number of steps'."));
+      if (phases.empty())
+        refuse("'Time/Phases' is empty; give at least one phase as `end time: "
+               "number of steps'.");
       return phases;
     }
   } // namespace

@@ -212,7 +212,8 @@ namespace Viscoplastic
           }
       }
       const auto check = [&]() {
-        AssertThrow(good, ExcMessage("HDF5 cannot write '" + file + "'."));
+        if (!good)
+          refuse("HDF5 cannot write '" + file + "'.");
       };
       if (!ranks)
         {

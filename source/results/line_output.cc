@@ -51,8 +51,8 @@ namespace Viscoplastic
         {
           require_writable_file(name);
           files.emplace_back(name);
-          AssertThrow(files.back(),
-                      ExcMessage("The file '" + name + "' cannot be written."));
+          if (!files.back())
+            refuse("The file '" + name + "' cannot be written.");
         }
     });
   }
@@ -122,9 +122,8 @@ namespace Viscoplastic
               file << '\n';
             }
           file << std::flush;
-          AssertThrow(file,
-                      ExcMessage("Writing to '" + names[i] +
-                                 "' failed; is the disk full?"));
+          if (!file)
+            refuse("Writing to '" + names[i] + "' failed; is the disk full?");
         });
       }
   }

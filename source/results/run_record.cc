@@ -116,11 +116,10 @@ namespace Viscoplastic
         std::error_code none;
         if (!std::filesystem::is_regular_file(path + name, none))
           continue;
-        AssertThrow(is_own(path + name, beginning),
-                    ExcMessage(
-                      "The results would overwrite '" + path + name +
-                      "', which this program has not written; choose another "
-                      "'Output/Directory'."));
+        if (!is_own(path + name, beginning))
+          refuse("The results would overwrite '" + path + name +
+                 "', which this program has not written; choose another "
+                 "'Output/Directory'.");
       }
   }
 
@@ -224,11 +223,10 @@ namespace Viscoplastic
   {
     std::error_code error;
     std::filesystem::create_directories(path, error);
-    AssertThrow(
-      !error,
-      ExcMessage(
+    if (error)
+      refuse(
         "The results directory '" + path +
-        "' cannot be written; change 'Output/Directory' or its permissions."));
+        "' cannot be written; change 'Output/Directory' or its permissions.");
   }
 
 

@@ -21,7 +21,8 @@ namespace Viscoplastic
   {
     require_writable_file(name);
     file.open(name);
-    AssertThrow(file, ExcMessage("The file '" + name + "' cannot be written."));
+    if (!file)
+      refuse("The file '" + name + "' cannot be written.");
   }
 
 
@@ -42,10 +43,9 @@ namespace Viscoplastic
         ++result.n_rows;
       else
         break;
-    AssertThrow(result.n_rows > 0,
-                ExcMessage("The rows up to step " + std::to_string(last_step) +
-                           ", with which the run would go on, are not in '" +
-                           name + "'."));
+    if (!(result.n_rows > 0))
+      refuse("The rows up to step " + std::to_string(last_step) +
+             ", with which the run would go on, are not in '" + name + "'.");
     return result;
   }
 
@@ -57,8 +57,8 @@ namespace Viscoplastic
     std::error_code error;
     std::filesystem::resize_file(name, beginning.size, error);
     std::ofstream file(name, std::ios::app);
-    AssertThrow(!error && file,
-                ExcMessage("The file '" + name + "' cannot be written."));
+    if (error || !file)
+      refuse("The file '" + name + "' cannot be written.");
     return file;
   }
 
@@ -69,10 +69,9 @@ namespace Viscoplastic
     : name(file_name)
   {
     const TableBeginning beginning = beginning_of_table(name, last_step);
-    AssertThrow(beginning.n_rows == last_step + 1,
-                ExcMessage("The rows up to step " + std::to_string(last_step) +
-                           ", with which the run would go on, are not in '" +
-                           name + "'."));
+    if (beginning.n_rows != last_step + 1)
+      refuse("The rows up to step " + std::to_string(last_step) +
+             ", with which the run would go on, are not in '" + name + "'.");
     for (const std::string &column :
          Utilities::split_string_list(beginning.header))
       columns.push_back(without_label(column));
@@ -101,10 +100,9 @@ namespace Viscoplastic
         columns = names;
         file << header << '\n';
       }
-    AssertThrow(columns == names,
-                ExcMessage(
-                  "The columns of '" + name +
-                  "' are not those of this run, which cannot go on with it."));
+    if (columns != names)
+      refuse("The columns of '" + name +
+             "' are not those of this run, which cannot go on with it.");
     // Refuse values that are not finite. The stability limit is infinite where
     // nothing flows.
     for (std::size_t i = 0; i < values.size(); ++i)
@@ -129,9 +127,8 @@ namespace Viscoplastic
     for (std::size_t i = 0; i < values.size(); ++i)
       file << (i == 0 ? "" : ",") << values[i];
     file << std::endl;
-    AssertThrow(file,
-                ExcMessage("Writing to '" + name +
-                           "' failed; is the disk full?"));
+    if (!file)
+      refuse("Writing to '" + name + "' failed; is the disk full?");
   }
 
 

@@ -58,12 +58,11 @@ namespace Viscoplastic
     read_file(const std::string &argument, CommandLine &result)
     {
       std::error_code error;
-      AssertThrow(argument.find('=') == std::string::npos ||
-                    std::filesystem::exists(argument, error),
-                  ExcMessage("There is no parameter file '" +
-                             excerpt(argument) +
-                             "'; to give an entry a value write --set '" +
-                             excerpt(argument) + "'."));
+      if (argument.find('=') != std::string::npos &&
+          !std::filesystem::exists(argument, error))
+        refuse("There is no parameter file '" + excerpt(argument) +
+               "'; to give an entry a value write --set '" + excerpt(argument) +
+               "'.");
       result.files.push_back(argument);
     }
 
@@ -79,14 +78,11 @@ namespace Viscoplastic
           result.overrides.push_back(value);
           return;
         }
-      AssertThrow(!value.empty(),
-                  ExcMessage(
-                    "The option --log needs the name of a file after it."));
-      AssertThrow(
-        std::filesystem::path(value).extension() != ".prm",
-        ExcMessage(
-          "The option --log would overwrite '" + excerpt(value) +
-          "', which looks like a parameter file; choose another name."));
+      if (value.empty())
+        refuse("The option --log needs the name of a file after it.");
+      if (std::filesystem::path(value).extension() == ".prm")
+        refuse("The option --log would overwrite '" + excerpt(value) +
+               "', which looks like a parameter file; choose another name.");
       result.log = value;
     }
 
@@ -109,27 +105,24 @@ namespace Viscoplastic
           for (const auto &known : with_value)
             options.push_back(known.first);
           const std::string nearest = nearest_name(option, options);
-          AssertThrow(false,
-                      ExcMessage(
-                        "There is no option '" + excerpt(option) + "'; " +
-                        (nearest.empty() ?
-                           "the options are " + enumeration(options) + "." :
-                           "did you mean " + nearest + "?")));
+          refuse("There is no option '" + excerpt(option) + "'; " +
+                 (nearest.empty() ?
+                    "the options are " + enumeration(options) + "." :
+                    "did you mean " + nearest + "?"));
         }
       const std::string               text   = value ? *value : "";
       const std::vector<std::string> &values = flag->second;
-      AssertThrow(value == nullptr ||
-                    std::find(values.begin(), values.end(), text) !=
-                      values.end(),
-                  ExcMessage("The option " + option +
-                             (values.empty() ? " has no value, such as '" :
-                                               " can have the value" +
-                                                 (values.size() > 1 ?
-                                                    "s " + values.front() +
-                                                      " and " + values.back() :
-                                                    ' ' + values.front()) +
-                                                 ", not '") +
-                             excerpt(text) + "'."));
+      if (value != nullptr &&
+          std::find(values.begin(), values.end(), text) == values.end())
+        refuse("The option " + option +
+               (values.empty() ?
+                  " has no value, such as '" :
+                  " can have the value" +
+                    (values.size() > 1 ?
+                       "s " + values.front() + " and " + values.back() :
+                       ' ' + values.front()) +
+                    ", not '") +
+               excerpt(text) + "'.");
       if (option == "--quiet")
         result.quiet = true;
       else if (option == "--verbose")
@@ -138,9 +131,9 @@ namespace Viscoplastic
         result.restart = text == "auto" ? Restart::automatic : Restart::yes;
       else
         {
-          AssertThrow(of_task.empty() || of_task == option,
-                      ExcMessage("The options " + of_task + " and " + option +
-                                 " exclude each other."));
+          if (!of_task.empty() && of_task != option)
+            refuse("The options " + of_task + " and " + option +
+                   " exclude each other.");
           of_task           = option;
           result.with_means = text == "means";
           result.task       = option == "--help" ?
@@ -165,19 +158,16 @@ namespace Viscoplastic
       const bool reads_scene = line.task == Task::run ||
                                line.task == Task::check ||
                                line.task == Task::print_scene;
-      AssertThrow(!reads_scene || !line.files.empty(),
-                  ExcMessage(
-                    "There is no parameter file among the arguments; write "
-                    "viscoplastic_contact [options] scene.prm."));
-      AssertThrow(line.task == Task::run || line.restart == Restart::no,
-                  ExcMessage("The options " + of_task +
-                             " and --restart exclude each other."));
-      AssertThrow(reads_scene || (describes && !line.files.empty()) ||
-                    (line.files.empty() && line.overrides.empty()),
-                  ExcMessage("The option " + of_task + " goes without " +
-                             (describes ?
-                                "--set where there is no parameter file." :
-                                "parameter files and --set.")));
+      if (reads_scene && line.files.empty())
+        refuse("There is no parameter file among the arguments; write "
+               "viscoplastic_contact [options] scene.prm.");
+      if (line.task != Task::run && line.restart != Restart::no)
+        refuse("The options " + of_task + " and --restart exclude each other.");
+      if (!reads_scene && (!describes || line.files.empty()) &&
+          (!line.files.empty() || !line.overrides.empty()))
+        refuse("The option " + of_task + " goes without " +
+               (describes ? "--set where there is no parameter file." :
+                            "parameter files and --set."));
     }
   } // namespace
 
@@ -217,9 +207,9 @@ namespace Viscoplastic
               }
             if (!has_value)
               {
-                AssertThrow(i + 1 < arguments.size(),
-                            ExcMessage("The option " + option + " needs " +
-                                       needed->second + " after it."));
+                if (i + 1 >= arguments.size())
+                  refuse("The option " + option + " needs " + needed->second +
+                         " after it.");
                 value = arguments[++i];
               }
             read_option(option, value, result);

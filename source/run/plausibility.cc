@@ -333,7 +333,8 @@ namespace Viscoplastic
         result.push_back(
           "Young's modulus of '" + section + "' is " + text(value) + " (" +
           number(value * pascal) +
-          " Pa in the SI); known materials have 1e4 Pa (gels), 1e6 Pa (rubber), "
+          " Pa in the SI); known materials have 1e4 Pa (gels), 1e6 Pa "
+          "(rubber), "
           "1e10 Pa (rock), 2e11 Pa (steel), up to 1.2e12 Pa (diamond).");
       const double time = ranges.time.largest, end = scene.schedule.end_time();
       if (time > 0. && time < 1e-9 * end)

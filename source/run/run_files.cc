@@ -86,11 +86,10 @@ namespace Viscoplastic
       refuse("None of the " + std::to_string(remarks.size()) +
              " checkpoint(s) in '" + checkpoints.directory +
              "' can be used: " + remarks[0] + '.');
-    AssertThrow(found || restart == Restart::automatic,
-                ExcMessage("There is no checkpoint in '" +
-                           checkpoints.directory +
-                           "'; begin without --restart, or name the place in "
-                           "'Checkpoint/Directory' or 'Output/Directory'."));
+    if (!found && restart != Restart::automatic)
+      refuse("There is no checkpoint in '" + checkpoints.directory +
+             "'; begin without --restart, or name the place in "
+             "'Checkpoint/Directory' or 'Output/Directory'.");
     return found;
   }
 

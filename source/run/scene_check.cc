@@ -94,21 +94,19 @@ namespace Viscoplastic
       const auto &solution = discretization.scene().exact_solution;
       if (solution && solution->makes_data)
         return;
-      AssertThrow(
-        violation.relative <= tolerance,
-        ExcMessage(
-          "The initial data are not in equilibrium with the loads at t = 0, "
-          "(2.12): the relative violation is " +
-          as_text(violation.relative) + ", more than " + as_text(tolerance) +
-          "; it is largest " +
-          (violation.is_axial ?
-             "in 'Loads/Axial force'" :
-             "at x = (" + as_text(violation.position) + "), " +
-               (violation.boundaries.empty() ?
-                  "inside of the body" :
-                  "on boundary " + list(violation.boundaries))) +
-          "; start with loads that the initial stress balances, or set "
-          "'Initial state/Equilibrate'."));
+      if (!(violation.relative <= tolerance))
+        refuse("The initial data are not in equilibrium with the loads at t = "
+               "0, (2.12): the relative violation is " +
+               as_text(violation.relative) + ", more than " +
+               as_text(tolerance) + "; it is largest " +
+               (violation.is_axial ?
+                  "in 'Loads/Axial force'" :
+                  "at x = (" + as_text(violation.position) + "), " +
+                    (violation.boundaries.empty() ?
+                       "inside of the body" :
+                       "on boundary " + list(violation.boundaries))) +
+               "; start with loads that the initial stress balances, or set "
+               "'Initial state/Equilibrate'.");
     }
 
 
@@ -209,11 +207,10 @@ namespace Viscoplastic
   {
     make_mesh(scene.parameters.geometry, triangulation);
     scene.inspect(triangulation);
-    AssertThrow(
-      !control.is_on || !scene.has_viscosity() ||
-        scene.parameters.error_control.error_estimator,
-      ExcMessage("'Step control/Tolerance' needs an estimate of the error; set "
-                 "'Error control/Error bar' = true."));
+    if (control.is_on && scene.has_viscosity() &&
+        !scene.parameters.error_control.error_estimator)
+      refuse("'Step control/Tolerance' needs an estimate of the error; set "
+             "'Error control/Error bar' = true.");
     control.set_has_estimate(scene.has_viscosity());
     if (announcer != nullptr)
       announcer->announce(scene);

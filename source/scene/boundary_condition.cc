@@ -24,10 +24,9 @@ namespace Viscoplastic
     {
       choices.replace(choices.rfind('|'), 1, " or ");
       choices.erase(0, choices.find('|') + 1);
-      AssertThrow(is_given,
-                  ExcMessage(
-                    "'" + entry(id, name) + "' is missing; it must be " +
-                    Utilities::replace_in_string(choices, "|", ", ") + "."));
+      if (!is_given)
+        refuse("'" + entry(id, name) + "' is missing; it must be " +
+               Utilities::replace_in_string(choices, "|", ", ") + ".");
     }
 
 
@@ -45,9 +44,9 @@ namespace Viscoplastic
                                              "bilateral");
       const ContactLaw &law = *given.contact_law;
       const auto refuse_if  = [&](const bool when, const std::string &reason) {
-        AssertThrow(!when,
-                    ExcMessage("'" + entry(id, "Contact law") + "' is " +
-                               law.name + ", but " + reason));
+        if (when)
+          refuse("'" + entry(id, "Contact law") + "' is " + law.name +
+                 ", but " + reason);
       };
       refuse_if(law.kind == Kind::bilateral && follows_pressure,
                 "'Friction law' = " + given.friction_law->name +
@@ -72,15 +71,14 @@ namespace Viscoplastic
       const std::vector<double> components =
         Utilities::string_to_double(Utilities::split_string_list(text, ','));
       Tensor<1, dim> result;
-      AssertThrow(components.size() == dim,
-                  ExcMessage("'" + entry + "' needs " + std::to_string(dim) +
-                             " components separated by commas, but '" +
-                             excerpt(text) + "' has " +
-                             std::to_string(components.size()) + "."));
+      if (components.size() != dim)
+        refuse("'" + entry + "' needs " + std::to_string(dim) +
+               " components separated by commas, but '" + excerpt(text) +
+               "' has " + std::to_string(components.size()) + ".");
       for (unsigned int d = 0; d < dim; ++d)
         result[d] = components[d];
-      AssertThrow(result.norm() > 0.,
-                  ExcMessage("'" + entry + "' is zero; give a direction."));
+      if (!(result.norm() > 0.))
+        refuse("'" + entry + "' is zero; give a direction.");
       return result / result.norm();
     }
 
@@ -91,11 +89,10 @@ namespace Viscoplastic
     given_components(const std::string &text, const std::string &entry)
     {
       const auto parts = Utilities::split_string_list(text, ';');
-      AssertThrow(parts.size() == dim,
-                  ExcMessage("'" + entry + "' needs " + std::to_string(dim) +
-                             " components separated by semicolons, but '" +
-                             excerpt(text) + "' has " +
-                             std::to_string(parts.size()) + "."));
+      if (parts.size() != dim)
+        refuse("'" + entry + "' needs " + std::to_string(dim) +
+               " components separated by semicolons, but '" + excerpt(text) +
+               "' has " + std::to_string(parts.size()) + ".");
       std::array<std::optional<Expression<dim>>, dim> result;
       for (unsigned int d = 0; d < dim; ++d)
         if (parts[d] != "free")
@@ -116,18 +113,14 @@ namespace Viscoplastic
       std::vector<std::string> parts(dim, "exact");
       if (!Utilities::trim(text).empty())
         parts = Utilities::split_string_list(text, ';');
-      AssertThrow(
-        parts.size() == dim && std::all_of(parts.begin(),
-                                           parts.end(),
-                                           [](const std::string &part) {
-                                             return part == "exact" ||
-                                                    part == "free";
-                                           }),
-        ExcMessage(
-          "'" + entry + "' is '" + excerpt(text) +
-          "', but with 'Exact solution/Data' = solution it can only be "
-          "left out, or be a list of `exact' and `free' for the " +
-          std::to_string(dim) + " components."));
+      if (parts.size() != dim ||
+          !std::all_of(parts.begin(), parts.end(), [](const std::string &part) {
+            return part == "exact" || part == "free";
+          }))
+        refuse("'" + entry + "' is '" + excerpt(text) +
+               "', but with 'Exact solution/Data' = solution it can only be "
+               "left out, or be a list of `exact' and `free' for the " +
+               std::to_string(dim) + " components.");
       std::array<std::optional<Expression<dim>>, dim> result;
       for (unsigned int d = 0; d < dim; ++d)
         if (parts[d] == "exact")
@@ -234,11 +227,10 @@ namespace Viscoplastic
                   const std::string                    &what,
                   const std::string                    &instead) const
       {
-        AssertThrow(!datum || !datum->depends_on_time(),
-                    ExcMessage("'" + entry(condition.id, name) +
-                               "' depends on time; " + what +
-                               " not become stiffer or softer, let the " +
-                               instead + " depend on time."));
+        if (datum && datum->depends_on_time())
+          refuse("'" + entry(condition.id, name) + "' depends on time; " +
+                 what + " not become stiffer or softer, let the " + instead +
+                 " depend on time.");
       }
 
       std::optional<VectorExpression<dim>>
@@ -264,14 +256,13 @@ namespace Viscoplastic
             given_components<dim>(text, name);
         if (!is_used)
           return {};
-        AssertThrow(
-          std::any_of(result.begin(),
-                      result.end(),
-                      [](const auto &one) { return one.has_value(); }),
-          ExcMessage(
+        if (!std::any_of(result.begin(), result.end(), [](const auto &one) {
+              return one.has_value();
+            }))
+          refuse(
             "'" + name +
             "' prescribes nothing; a boundary that is free in all directions "
-            "has the role free, or traction with a load or springs."));
+            "has the role free, or traction with a load or springs.");
         return result;
       }
     };
@@ -297,12 +288,10 @@ namespace Viscoplastic
                       friction_law != nullptr,
                       names_of(friction_laws()));
         contact_law = contact_law_of(id, parameters);
-        AssertThrow(
-          !(solution && is_unilateral()),
-          ExcMessage(
-            "'" + entry(id, "Contact law") + "' is " + contact_law->name +
-            ", for which 'Exact solution/Data' = solution makes no data; "
-            "use 'Data' = scene."));
+        if (solution && is_unilateral())
+          refuse("'" + entry(id, "Contact law") + "' is " + contact_law->name +
+                 ", for which 'Exact solution/Data' = solution makes no data; "
+                 "use 'Data' = scene.");
       }
 
     if (solution)
@@ -310,23 +299,19 @@ namespace Viscoplastic
            {std::make_pair("Traction", parameters.traction),
             std::make_pair("Pressure", parameters.pressure),
             std::make_pair("Normal stress", parameters.normal_stress)})
-        AssertThrow(
-          !is_given(text),
-          ExcMessage(
-            "'" + entry(id, name) +
-            "' is given, but 'Exact solution/Data' = solution makes it; "
-            "leave one of them out."));
+        if (is_given(text))
+          refuse("'" + entry(id, name) +
+                 "' is given, but 'Exact solution/Data' = solution makes it; "
+                 "leave one of them out.");
     const EntryReader<dim> read{*this};
     displacement = read.displacement(parameters.displacement);
-    AssertThrow(
-      role != BoundaryRole::traction || solution ||
-        is_given(parameters.traction) || is_given(parameters.pressure) ||
-        is_given(parameters.normal_stiffness) ||
-        is_given(parameters.tangential_stiffness),
-      ExcMessage(
-        "'" + entry(id, "Traction") +
-        "' is missing, and so are 'Pressure' and stiffnesses of springs; "
-        "a boundary without load has the role free."));
+    if (role == BoundaryRole::traction && !solution &&
+        !is_given(parameters.traction) && !is_given(parameters.pressure) &&
+        !is_given(parameters.normal_stiffness) &&
+        !is_given(parameters.tangential_stiffness))
+      refuse("'" + entry(id, "Traction") +
+             "' is missing, and so are 'Pressure' and stiffnesses of springs; "
+             "a boundary without load has the role free.");
     traction = read.vector("Traction", parameters.traction);
     pressure = read.nonzero_scalar("Pressure", parameters.pressure);
     normal_stiffness =
@@ -339,22 +324,19 @@ namespace Viscoplastic
     slip_rate_factor.emplace(parameters.slip_rate_factor,
                              entry(id, "Slip rate factor"),
                              "v");
-    AssertThrow(
-      !slip_rate_factor->depends_on_time(),
-      ExcMessage(
+    if (slip_rate_factor->depends_on_time())
+      refuse(
         "'" + entry(id, "Slip rate factor") +
         "' depends on t, but only the slip rate v is known there; 'Friction "
-        "bound' and 'Friction coefficient' may depend on place and time."));
+        "bound' and 'Friction coefficient' may depend on place and time.");
     if (!uses(*this, "Slip rate factor") ||
         (!slip_rate_factor->depends_on_position() &&
          slip_rate_factor->value(Point<1>(), 0.) == 1.))
       slip_rate_factor.reset();
-    AssertThrow(
-      !(solution && slip_rate_factor),
-      ExcMessage(
-        "'" + entry(id, "Slip rate factor") +
-        "' is given, for which 'Exact solution/Data' = solution makes no "
-        "data; use 'Data' = scene."));
+    if (solution && slip_rate_factor)
+      refuse("'" + entry(id, "Slip rate factor") +
+             "' is given, for which 'Exact solution/Data' = solution makes no "
+             "data; use 'Data' = scene.");
     normal_stress = read.scalar("Normal stress", parameters.normal_stress);
     given_gap     = read.nonzero_scalar("Gap", parameters.gap);
     std::vector<double> numbers;

@@ -37,18 +37,16 @@ namespace Viscoplastic
     , space_step(relative_step)
     , time_step(relative_step * end_time)
   {
-    AssertThrow(
-      !Utilities::trim(parameters.displacement).empty(),
-      ExcMessage(
-        "'Exact solution/Displacement' is missing, but other entries of "
-        "that section are given."));
+    if (Utilities::trim(parameters.displacement).empty())
+      refuse("'Exact solution/Displacement' is missing, but other entries of "
+             "that section are given.");
     given_displacement.emplace(parameters.displacement,
                                dim + (is_generalized() ? 1 : 0),
                                "Exact solution/Displacement");
-    AssertThrow(
-      !is_generalized() || !(*given_displacement)[dim].depends_on_position(),
-      ExcMessage("The last component of 'Exact solution/Displacement', eps_zz, "
-                 "depends on the place, but it is one for the whole section."));
+    if (is_generalized() &&
+        !(!(*given_displacement)[dim].depends_on_position()))
+      refuse("The last component of 'Exact solution/Displacement', eps_zz, "
+             "depends on the place, but it is one for the whole section.");
     if (!Utilities::trim(parameters.stress).empty())
       given_stress.emplace(parameters.stress,
                            stress_components<dim>().size(),
@@ -63,11 +61,10 @@ namespace Viscoplastic
   {
     space_step = relative_step * size;
     material   = has_own_stress() ? nullptr : elastic;
-    AssertThrow(
-      !makes_data || has_stress(),
-      ExcMessage(
+    if (makes_data && !has_stress())
+      refuse(
         "'Exact solution/Stress' is missing; only for a body of one elastic "
-        "material without thermal expansion it follows from the displacement."));
+        "material without thermal expansion it follows from the displacement.");
   }
 
 
@@ -228,13 +225,11 @@ namespace Viscoplastic
       const double coarse = difference(16. * time_step),
                    fine   = difference(time_step);
       // By a factor of 4 for t^0.5; by 16^0.1 = 1.3 for t^0.9.
-      AssertThrow(
-        !(fine > 1.3 * coarse && difference(time_step / 16.) > 1.3 * fine),
-        ExcMessage("'Exact solution/" + name +
-                   "' has no time derivative at x = (" + as_text(x) +
-                   "), t = " + as_text(t) +
-                   ": its differences over shorter and shorter times grow "
-                   "without bound."));
+      if (fine > 1.3 * coarse && difference(time_step / 16.) > 1.3 * fine)
+        refuse("'Exact solution/" + name + "' has no time derivative at x = (" +
+               as_text(x) + "), t = " + as_text(t) +
+               ": its differences over shorter and shorter times grow without "
+               "bound.");
     };
     refuse_growth("Displacement",
                   [&](const double s) { return displacement(x, s); });

@@ -19,26 +19,22 @@ namespace Viscoplastic
       const std::string  where = "'" + entry + "': ";
       FullMatrix<double> matrix(6, 6);
       const auto         rows = Utilities::split_string_list(text, ';');
-      AssertThrow(rows.size() == 6,
-                  ExcMessage(
-                    where +
-                    "there must be 6 rows separated by semicolons, not " +
-                    std::to_string(rows.size()) + "."));
+      if (rows.size() != 6)
+        refuse(where + "there must be 6 rows separated by semicolons, not " +
+               std::to_string(rows.size()) + ".");
       for (unsigned int i = 0; i < 6; ++i)
         {
           const auto numbers = Utilities::split_string_list(rows[i], ',');
-          AssertThrow(numbers.size() == 6,
-                      ExcMessage(
-                        where + "row " + std::to_string(i + 1) +
-                        " must have 6 numbers separated by commas, not " +
-                        std::to_string(numbers.size()) + "."));
+          if (numbers.size() != 6)
+            refuse(where + "row " + std::to_string(i + 1) +
+                   " must have 6 numbers separated by commas, not " +
+                   std::to_string(numbers.size()) + ".");
           for (unsigned int j = 0; j < 6; ++j)
             {
               const auto number = number_of(numbers[j]);
-              AssertThrow(number,
-                          ExcMessage(where + "'" + numbers[j] + "' in row " +
-                                     std::to_string(i + 1) +
-                                     " is not a number."));
+              if (!number)
+                refuse(where + "'" + numbers[j] + "' in row " +
+                       std::to_string(i + 1) + " is not a number.");
               matrix(i, j) = *number;
             }
         }
@@ -47,15 +43,13 @@ namespace Viscoplastic
       if (dim == 2)
         for (const unsigned int in_plane : {0, 1, 2, 5})
           for (const unsigned int out_of_plane : {3, 4})
-            AssertThrow(
-              matrix(in_plane, out_of_plane) == 0. &&
-                matrix(out_of_plane, in_plane) == 0.,
-              ExcMessage(
+            if (matrix(in_plane, out_of_plane) != 0. ||
+                matrix(out_of_plane, in_plane) != 0.)
+              refuse(
                 where + "the entry in row " + std::to_string(in_plane + 1) +
                 ", column " + std::to_string(out_of_plane + 1) +
-                " couples deformations in the plane with shear out of "
-                "it; it must be zero in plane strain (2D), or the scene "
-                "be 3D."));
+                " couples deformations in the plane with shear out of it; it "
+                "must be zero in plane strain (2D), or the scene be 3D.");
 
       try
         {
@@ -77,9 +71,9 @@ namespace Viscoplastic
       if (Utilities::trim(text).empty())
         return otherwise;
       const auto t = number_of(text);
-      AssertThrow(t && *t > 0. && std::isfinite(*t),
-                  ExcMessage("'" + entry + "' = " + text +
-                             " is not a time after the beginning."));
+      if (!t || !(*t > 0.) || !std::isfinite(*t))
+        refuse("'" + entry + "' = " + text +
+               " is not a time after the beginning.");
       return *t;
     }
 
@@ -97,17 +91,15 @@ namespace Viscoplastic
         return std::numeric_limits<double>::infinity();
       if (const auto given = optional_positive_number(text, entry))
         return *given;
-      AssertThrow(temperature.reference,
-                  ExcMessage(
-                    "'" + section +
-                    "/Activation energy' needs the temperature for which the "
-                    "entries of the law hold: give '" +
-                    entry + "', or 'Temperature/Reference temperature'."));
-      AssertThrow(
-        *temperature.reference > 0.,
-        ExcMessage(
-          "'Temperature/Reference temperature' is no absolute temperature, as '" +
-          section + "/Activation energy' needs it."));
+      if (!temperature.reference)
+        refuse("'" + section +
+               "/Activation energy' needs the temperature for which the "
+               "entries of the law hold: give '" +
+               entry + "', or 'Temperature/Reference temperature'.");
+      if (!(*temperature.reference > 0.))
+        refuse("'Temperature/Reference temperature' is no absolute "
+               "temperature, as '" +
+               section + "/Activation energy' needs it.");
       return *temperature.reference;
     }
 
@@ -129,21 +121,18 @@ namespace Viscoplastic
       }();
       if (!law)
         return law;
-      AssertThrow(
-        temperature || !law->depends_on_temperature(),
-        ExcMessage(
-          "'" + section + "/" + name +
-          "' is a law of the temperature T, but the scene has none: give "
-          "'Temperature/Value'."));
+      if (!temperature && law->depends_on_temperature())
+        refuse("'" + section + "/" + name +
+               "' is a law of the temperature T, but the scene has none: give "
+               "'Temperature/Value'.");
       const std::string entry  = section + "/Activation energy";
       const auto        energy = Utilities::trim(parameters.activation_energy);
       if (energy.empty() || energy == "0")
         return law;
       const double Q = *optional_positive_number(energy, entry);
-      AssertThrow(temperature,
-                  ExcMessage(
-                    "'" + entry +
-                    "' needs a temperature: give 'Temperature/Value'."));
+      if (!temperature)
+        refuse("'" + entry +
+               "' needs a temperature: give 'Temperature/Value'.");
       return thermally_activated(std::move(law),
                                  Q / temperature->gas_constant,
                                  law_temperature(section,
@@ -178,34 +167,28 @@ namespace Viscoplastic
       {
         thermal_expansion.emplace(parameters.thermal_expansion,
                                   expansion_entry);
-        AssertThrow(
-          !thermal_expansion->depends_on_time(),
-          ExcMessage(
-            "'" + expansion_entry +
-            "' depends on t; it must be a function of position only."));
-        AssertThrow(temperature || thermal_expansion->is_zero(),
-                    ExcMessage(
-                      "'" + expansion_entry +
-                      "' needs a temperature: give 'Temperature/Value'."));
+        if (thermal_expansion->depends_on_time())
+          refuse("'" + expansion_entry +
+                 "' depends on t; it must be a function of position only.");
+        if (!temperature && !thermal_expansion->is_zero())
+          refuse("'" + expansion_entry +
+                 "' needs a temperature: give 'Temperature/Value'.");
         if (thermal_expansion->is_zero())
           thermal_expansion.reset();
       }
-    AssertThrow(added_at < removed_at,
-                ExcMessage(
-                  "'" + section + "/Removed at' = " + parameters.removed_at +
-                  " is not later than 'Added at' = " + parameters.added_at +
-                  "."));
+    if (!(added_at < removed_at))
+      refuse("'" + section + "/Removed at' = " + parameters.removed_at +
+             " is not later than 'Added at' = " + parameters.added_at + ".");
     if (!parameters.voigt_matrix.empty())
       {
         // Moduli given beside a matrix are refused, except for their default
         // values, since complete parameter files contain these.
         const MaterialParameters defaults;
-        AssertThrow(parameters.youngs_modulus == defaults.youngs_modulus &&
-                      parameters.poissons_ratio == defaults.poissons_ratio,
-                    ExcMessage(
-                      "'" + section +
-                      "' has a `Voigt matrix' and Young's modulus or Poisson's "
-                      "ratio; give either the matrix or these."));
+        if (parameters.youngs_modulus != defaults.youngs_modulus ||
+            parameters.poissons_ratio != defaults.poissons_ratio)
+          refuse("'" + section +
+                 "' has a `Voigt matrix' and Young's modulus or Poisson's "
+                 "ratio; give either the matrix or these.");
         anisotropic = read_voigt_matrix(parameters.voigt_matrix,
                                         section + "/Voigt matrix",
                                         dim);
@@ -219,11 +202,10 @@ namespace Viscoplastic
     for (const auto &[expression, entry] :
          {std::make_pair(&*youngs_modulus, "Young's modulus"),
           std::make_pair(&*poissons_ratio, "Poisson's ratio")})
-      AssertThrow(
-        !expression->depends_on_time(),
-        ExcMessage(
+      if (expression->depends_on_time())
+        refuse(
           "'" + section + "/" + entry +
-          "' depends on t; elastic moduli must be functions of position only."));
+          "' depends on t; elastic moduli must be functions of position only.");
     if (is_uniform())
       stiffness(Point<dim>());
   }

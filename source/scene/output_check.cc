@@ -19,10 +19,9 @@ namespace Viscoplastic
       for (const RecordedField field : fields)
         {
           const auto needs = [&](const bool is_there, const std::string &what) {
-            AssertThrow(is_there,
-                        ExcMessage("'" + entry + "': there is no `" +
-                                   name_of(field) + "' where no " + what +
-                                   "."));
+            if (!is_there)
+              refuse("'" + entry + "': there is no `" + name_of(field) +
+                     "' where no " + what + ".");
           };
           needs(!is_of_contact(field) || scene.has_contact(),
                 "boundary has the role contact");
@@ -57,11 +56,10 @@ namespace Viscoplastic
         return;
       const auto found =
         locate_on_boundary(triangulation, points, scene.contact_boundaries());
-      AssertThrow(
-        std::count(found.distances.begin(), found.distances.end(), 0.) > 0,
-        ExcMessage("'" + entry + "': `" + name_of(*field) +
-                   "' is a field of boundaries with the role contact, and " +
-                   places + "."));
+      if (!(std::count(found.distances.begin(), found.distances.end(), 0.) > 0))
+        refuse("'" + entry + "': `" + name_of(*field) +
+               "' is a field of boundaries with the role contact, and " +
+               places + ".");
     }
   } // namespace
 
@@ -75,11 +73,9 @@ namespace Viscoplastic
   {
     const OutputParameters &asked = scene.parameters.output;
 #ifndef DEAL_II_WITH_HDF5
-    AssertThrow(
-      !asked.in_hdf5,
-      ExcMessage(
-        "'Output/Fields in HDF5' needs a deal.II with HDF5, which this one "
-        "has not."));
+    if (asked.in_hdf5)
+      refuse("'Output/Fields in HDF5' needs a deal.II with HDF5, which this "
+             "one has not.");
 #endif
     check_points(triangulation, scene.output_points, "Output/Points");
     check_fields_at(scene,
@@ -106,32 +102,29 @@ namespace Viscoplastic
     for (const OutputIntegral &integral : scene.output_integrals)
       {
         const std::string id = std::to_string(integral.id);
-        AssertThrow(integral.domain != Domain::material ||
-                      materials.count(integral.id) == 1,
-                    ExcMessage("'" + entry + "': no cell has the material id " +
-                               id + "; the mesh has the material ids " +
-                               list({materials.begin(), materials.end()}) +
-                               "."));
+        if (integral.domain == Domain::material &&
+            materials.count(integral.id) != 1)
+          refuse("'" + entry + "': no cell has the material id " + id +
+                 "; the mesh has the material ids " +
+                 list({materials.begin(), materials.end()}) + ".");
         if (integral.domain != Domain::boundary)
           continue;
         const auto boundary = scene.boundary.find(integral.id);
-        AssertThrow(boundary != scene.boundary.end(),
-                    ExcMessage("'" + entry + "': there is no boundary " + id +
-                               "; the mesh has the ids " +
-                               list(boundary_ids(triangulation)) + "."));
+        if (boundary == scene.boundary.end())
+          refuse("'" + entry + "': there is no boundary " + id +
+                 "; the mesh has the ids " + list(boundary_ids(triangulation)) +
+                 ".");
         for (const RecordedField field : integral.fields)
-          AssertThrow(
-            (!is_of_contact(field) ||
-             boundary->second.role == BoundaryRole::contact) &&
-              (!is_of_friction(field) || boundary->second.has_friction()) &&
-              (!is_of_unilateral_contact(field) ||
-               boundary->second.is_unilateral()),
-            ExcMessage("'" + entry + "': boundary " + id + " has no `" +
-                       name_of(field) + "', which takes " +
-                       (is_of_friction(field) ? "friction." :
-                        is_of_unilateral_contact(field) ?
-                                                "unilateral contact." :
-                                                "the role contact.")));
+          if ((is_of_contact(field) &&
+               boundary->second.role != BoundaryRole::contact) ||
+              (is_of_friction(field) && !boundary->second.has_friction()) ||
+              (is_of_unilateral_contact(field) &&
+               !boundary->second.is_unilateral()))
+            refuse("'" + entry + "': boundary " + id + " has no `" +
+                   name_of(field) + "', which takes " +
+                   (is_of_friction(field)           ? "friction." :
+                    is_of_unilateral_contact(field) ? "unilateral contact." :
+                                                      "the role contact."));
       }
 
     std::vector<std::string> warnings;

@@ -41,12 +41,11 @@ namespace Viscoplastic
       if (place == "body")
         return result;
       const auto found = names.find(place);
-      AssertThrow(
-        found && (found->kind == "boundary" || found->kind == "material"),
-        ExcMessage(
+      if (!found || (found->kind != "boundary" && found->kind != "material"))
+        refuse(
           "'Output/Integrals': '" + excerpt(place) +
           "' is no place to integrate over; write `boundary ID: fields', "
-          "`material ID: fields' or `body: fields', or the name of the place."));
+          "`material ID: fields' or `body: fields', or the name of the place.");
       result.domain =
         found->kind == "boundary" ? Domain::boundary : Domain::material;
       result.id = found->number;
@@ -108,10 +107,9 @@ namespace Viscoplastic
           continue;
         const auto parts =
           Utilities::split_string_list(split_name(line).second, ':');
-        AssertThrow(parts.size() == 3,
-                    ExcMessage(
-                      "'Output/Lines': '" + excerpt(line) +
-                      "' is no line; write `begin : end : number of points'."));
+        if (parts.size() != 3)
+          refuse("'Output/Lines': '" + excerpt(line) +
+                 "' is no line; write `begin : end : number of points'.");
         int n_points = 0;
         try
           {
@@ -121,18 +119,16 @@ namespace Viscoplastic
           {
             n_points = 0; // refused below
           }
-        AssertThrow(
-          n_points >= 2 && n_points <= most_points_of_line,
-          ExcMessage(
-            "'Output/Lines': a line has a number of points from 2 to " +
-            std::to_string(most_points_of_line) + ", not '" +
-            excerpt(parts[2]) + "'."));
+        if (!(n_points >= 2) || !(n_points <= most_points_of_line))
+          refuse("'Output/Lines': a line has a number of points from 2 to " +
+                 std::to_string(most_points_of_line) + ", not '" +
+                 excerpt(parts[2]) + "'.");
         result.push_back({parse_point<dim>(parts[0], "Output/Lines"),
                           parse_point<dim>(parts[1], "Output/Lines"),
                           static_cast<unsigned int>(n_points)});
-        AssertThrow(result.back().begin != result.back().end,
-                    ExcMessage("'Output/Lines': the line '" + excerpt(line) +
-                               "' begins where it ends."));
+        if (result.back().begin == result.back().end)
+          refuse("'Output/Lines': the line '" + excerpt(line) +
+                 "' begins where it ends.");
       }
     return result;
   }
@@ -160,23 +156,20 @@ namespace Viscoplastic
               integral.fields.insert(read_field(field));
           }
         for (const RecordedField field : integral.fields)
-          AssertThrow(integral.domain == OutputIntegral::Domain::boundary ||
-                        !is_of_boundary(field),
-                      ExcMessage("'Output/Integrals': `" + name_of(field) +
-                                 "' is a field of boundaries, and " +
-                                 entry.substr(0, colon) + " is none."));
-        AssertThrow(
-          !integral.energies ||
-            integral.domain != OutputIntegral::Domain::boundary,
-          ExcMessage(
-            "'Output/Integrals': `energies' are those of materials or the "
-            "body, not of " +
-            entry.substr(0, colon) + "."));
+          if (integral.domain != OutputIntegral::Domain::boundary &&
+              is_of_boundary(field))
+            refuse("'Output/Integrals': `" + name_of(field) +
+                   "' is a field of boundaries, and " + entry.substr(0, colon) +
+                   " is none.");
+        if (integral.energies &&
+            integral.domain == OutputIntegral::Domain::boundary)
+          refuse("'Output/Integrals': `energies' are those of materials or the "
+                 "body, not of " +
+                 entry.substr(0, colon) + ".");
         for (const OutputIntegral &other : result)
-          AssertThrow(other.name() != integral.name(),
-                      ExcMessage(
-                        "'Output/Integrals' has " + entry.substr(0, colon) +
-                        " twice; give its fields once, separated by commas."));
+          if (other.name() == integral.name())
+            refuse("'Output/Integrals' has " + entry.substr(0, colon) +
+                   " twice; give its fields once, separated by commas.");
         result.push_back(integral);
       }
     return result;

@@ -24,9 +24,8 @@ namespace Viscoplastic
     check_name(const std::string &name, const std::string &entry)
     {
       const auto require = [&](const bool condition, const std::string &why) {
-        AssertThrow(condition,
-                    ExcMessage("'" + entry + "': the name '" + excerpt(name) +
-                               "' " + why));
+        if (!condition)
+          refuse("'" + entry + "': the name '" + excerpt(name) + "' " + why);
       };
       require(name.size() <= longest_name,
               "is too long; at most " + std::to_string(longest_name) +
@@ -69,10 +68,9 @@ namespace Viscoplastic
         return;
       check_name(name, entry);
       for (const auto &[other, taken] : names)
-        AssertThrow(taken != name,
-                    ExcMessage("'" + entry + "' is '" + excerpt(name) +
-                               "', which " + other.text() +
-                               " is called already; take another name."));
+        if (taken == name)
+          refuse("'" + entry + "' is '" + excerpt(name) + "', which " +
+                 other.text() + " is called already; take another name.");
       names[place] = name;
     };
     for (const auto &[id, boundary] : parameters.boundaries)
@@ -111,11 +109,10 @@ namespace Viscoplastic
         if (names.count(place) == 1)
           continue;
         for (const auto &[other, taken] : given)
-          AssertThrow(taken != name,
-                      ExcMessage("The scene calls " + other.text() + " '" +
-                                 excerpt(name) + "', as '" + geometry.file +
-                                 "' calls " + place.text() +
-                                 "; take another name."));
+          if (taken == name)
+            refuse("The scene calls " + other.text() + " '" + excerpt(name) +
+                   "', as '" + geometry.file + "' calls " + place.text() +
+                   "; take another name.");
         if (!find(name))
           try
             {

@@ -46,10 +46,9 @@ namespace Viscoplastic
     , temperature(
         make_temperature<dim>(parameters.temperature, parameters.units))
   {
-    AssertThrow(dim == 2 || plane_model() == PlaneModel::strain,
-                ExcMessage(
-                  "'Geometry/Plane model' = " + name_of(plane_model()) +
-                  " is that of meshes in 2D, but 'Dimension' = 3."));
+    if (dim != 2 && plane_model() != PlaneModel::strain)
+      refuse("'Geometry/Plane model' = " + name_of(plane_model()) +
+             " is that of meshes in 2D, but 'Dimension' = 3.");
     read_axial_datum();
     const ExactSolution<dim> *source_of_data =
       exact_solution && exact_solution->makes_data ? exact_solution.get() :
@@ -66,10 +65,9 @@ namespace Viscoplastic
     output_points                  = read_output_points<dim>(output.points);
     output_lines                   = read_output_lines<dim>(output.lines);
     output_integrals = read_output_integrals(output.integrals, names);
-    AssertThrow(output.revolved_angle == 0. || is_axisymmetric(),
-                ExcMessage(
-                  "'Output/Revolved angle' is for bodies of revolution "
-                  "('Geometry/Plane model' = axisymmetric)."));
+    if (output.revolved_angle != 0. && !is_axisymmetric())
+      refuse("'Output/Revolved angle' is for bodies of revolution "
+             "('Geometry/Plane model' = axisymmetric).");
     if (!parameters.error_control.quantity.empty())
       quantity = quantity_of_interest(
         names.column(parameters.error_control.quantity),
@@ -92,26 +90,20 @@ namespace Viscoplastic
       std::optional<Expression<dim>> result;
       if (Utilities::trim(text).empty())
         return result;
-      AssertThrow(
-        is_generalized(),
-        ExcMessage(
-          "'" + entry +
-          "' is that of 'Geometry/Plane model' = generalized strain."));
+      if (!is_generalized())
+        refuse("'" + entry +
+               "' is that of 'Geometry/Plane model' = generalized strain.");
       result.emplace(text, entry);
-      AssertThrow(
-        !result->depends_on_position(),
-        ExcMessage(
-          "'" + entry + "' = " + text +
-          " depends on the place, but it is one for the whole section."));
+      if (result->depends_on_position())
+        refuse("'" + entry + "' = " + text +
+               " depends on the place, but it is one for the whole section.");
       return result;
     };
     axial_force  = read(parameters.loads.axial_force, "Axial force");
     axial_strain = read(parameters.loads.axial_strain, "Axial strain");
-    AssertThrow(
-      !axial_force || !axial_strain,
-      ExcMessage(
-        "'Loads/Axial force' and 'Loads/Axial strain' follow from each "
-        "other; leave one of them out."));
+    if (axial_force && axial_strain)
+      refuse("'Loads/Axial force' and 'Loads/Axial strain' follow from each "
+             "other; leave one of them out.");
     if (is_generalized() && !axial_strain && !axial_force)
       axial_force.emplace("0", "Loads/Axial force");
   }
@@ -135,28 +127,23 @@ namespace Viscoplastic
           name.find_first_not_of("0123456789") == std::string::npos;
         const auto place =
           names.find(is_number && name.size() < 9 ? "boundary " + name : name);
-        AssertThrow(place && place->kind == "boundary" &&
-                      boundary.count(place->number) == 1,
-                    ExcMessage(entry + " is no boundary of the scene."));
+        if (!place || place->kind != "boundary" ||
+            boundary.count(place->number) != 1)
+          refuse(entry + " is no boundary of the scene.");
         const auto &other = boundary.at(place->number);
-        AssertThrow(other.role == BoundaryRole::free ||
-                      other.role == BoundaryRole::traction,
-                    ExcMessage(
-                      entry +
-                      " must have the role free (or traction): what happens "
-                      "between the two sides is said once, at boundary " +
-                      std::to_string(id) + "."));
-        AssertThrow(
-          !condition.foundation_motion,
-          ExcMessage(
-            "'Boundary " + std::to_string(id) +
-            "/Foundation motion' moves a rigid foundation, but 'Against' "
-            "says that another body is there."));
-        AssertThrow(!exact_solution || !exact_solution->makes_data,
-                    ExcMessage(
-                      entry +
-                      ": 'Exact solution/Data' = solution makes no data for "
-                      "two bodies; use 'Data' = scene."));
+        if (other.role != BoundaryRole::free &&
+            other.role != BoundaryRole::traction)
+          refuse(entry +
+                 " must have the role free (or traction): what happens between "
+                 "the two sides is said once, at boundary " +
+                 std::to_string(id) + ".");
+        if (condition.foundation_motion)
+          refuse("'Boundary " + std::to_string(id) +
+                 "/Foundation motion' moves a rigid foundation, but 'Against' "
+                 "says that another body is there.");
+        if (exact_solution && exact_solution->makes_data)
+          refuse(entry + ": 'Exact solution/Data' = solution makes no data for "
+                         "two bodies; use 'Data' = scene.");
         condition.against = place->number;
       }
   }
@@ -175,16 +162,13 @@ namespace Viscoplastic
                          parameters.initial_state.displacement),
           std::make_pair("Initial state/Stress",
                          parameters.initial_state.stress)})
-      AssertThrow(
-        Utilities::trim(text).empty(),
-        ExcMessage("'" + std::string(name) +
-                   "' is given, but 'Exact solution/Data' = solution makes it; "
-                   "leave one of them out."));
-    AssertThrow(
-      !parameters.initial_state.equilibrate,
-      ExcMessage(
-        "'Initial state/Equilibrate' contradicts 'Exact solution/Data' = "
-        "solution, whose initial data are those of the solution."));
+      if (!Utilities::trim(text).empty())
+        refuse("'" + std::string(name) +
+               "' is given, but 'Exact solution/Data' = solution makes it; "
+               "leave one of them out.");
+    if (parameters.initial_state.equilibrate)
+      refuse("'Initial state/Equilibrate' contradicts 'Exact solution/Data' = "
+             "solution, whose initial data are those of the solution.");
 
     const ExactSolution<dim> &solution = *exact_solution;
     const std::string         stress   = "Exact solution/Stress",

@@ -60,9 +60,8 @@ namespace Viscoplastic
     const std::set<types::boundary_id> &ids) const
   {
     for (const types::boundary_id id : ids)
-      AssertThrow(
-        boundary.count(id) == 1,
-        ExcMessage(
+      if (boundary.count(id) != 1)
+        refuse(
           "Boundary id " + std::to_string(id) +
           " of the mesh has no role; add `subsection Boundary " +
           std::to_string(id) +
@@ -70,14 +69,13 @@ namespace Viscoplastic
           list(ids) +
           (id == 0 && !parameters.geometry.file.empty() ?
              "; faces that the file puts into no group have the id 0." :
-             ".")));
+             "."));
     for (const auto &pair : boundary)
-      AssertThrow(
-        ids.count(pair.first) == 1,
-        ExcMessage("'Boundary " + std::to_string(pair.first) +
-                   "' has a role, but the mesh has no such boundary id; it has "
-                   "the ids " +
-                   list(ids) + "."));
+      if (ids.count(pair.first) != 1)
+        refuse("'Boundary " + std::to_string(pair.first) +
+               "' has a role, but the mesh has no such boundary id; it has the "
+               "ids " +
+               list(ids) + ".");
   }
 
 
@@ -94,12 +92,11 @@ namespace Viscoplastic
         for (const unsigned int v : cell->vertex_indices())
           least = std::min(least, cell->vertex(v)[0] / cell->diameter());
     least = Utilities::MPI::min(least, triangulation.get_communicator());
-    AssertThrow(
-      least > -1e-9,
-      ExcMessage(
+    if (!(least > -1e-9))
+      refuse(
         "The mesh crosses the axis: some of it has x = r < 0, but with " +
         model +
-        " it is the section of a body of revolution on one side of x = 0."));
+        " it is the section of a body of revolution on one side of x = 0.");
 
     // The coarse mesh is known to all ranks.
     std::set<unsigned int> on_axis, held;
@@ -114,25 +111,22 @@ namespace Viscoplastic
             {
               const auto &condition = boundary.at(face->boundary_id());
               const auto &radial    = condition.displacement[0];
-              AssertThrow(
-                condition.role == BoundaryRole::symmetry ||
-                  condition.role == BoundaryRole::clamped ||
-                  (radial && radial->is_zero()),
-                ExcMessage(
-                  "Boundary " + std::to_string(condition.id) +
-                  " lies on the axis of a body of revolution, where u_r "
-                  "= 0; give it the role symmetry, or a displacement "
-                  "whose first component is 0."));
+              if (condition.role != BoundaryRole::symmetry &&
+                  condition.role != BoundaryRole::clamped &&
+                  (!radial || !radial->is_zero()))
+                refuse("Boundary " + std::to_string(condition.id) +
+                       " lies on the axis of a body of revolution, where u_r = "
+                       "0; give it the role symmetry, or a displacement whose "
+                       "first component is 0.");
               for (const unsigned int v : face->vertex_indices())
                 held.insert(face->vertex_index(v));
             }
       }
     for (const unsigned int vertex : on_axis)
-      AssertThrow(
-        held.count(vertex) == 1,
-        ExcMessage(
-          "The mesh touches the axis of revolution in a single node, which "
-          "nothing holds there; let a boundary lie on the axis, or none of it."));
+      if (held.count(vertex) != 1)
+        refuse("The mesh touches the axis of revolution in a single node, "
+               "which nothing holds there; let a boundary lie on the axis, or "
+               "none of it.");
   }
 
 
@@ -177,7 +171,8 @@ namespace Viscoplastic
       as_text(angle) +
       " degrees, and normals at their nodes are means of theirs: give the "
       "parts beside an edge boundary ids of their own, and a curve more cells.";
-    AssertThrow(angle <= 60., ExcMessage(sentence));
+    if (!(angle <= 60.))
+      refuse(sentence);
     warnings.push_back(sentence);
   }
 
@@ -196,11 +191,10 @@ namespace Viscoplastic
           const PieceNormal<dim> piece = piece_normal(triangulation, id);
           if (condition.normal_is_given)
             {
-              AssertThrow(faces_towards(triangulation, id, condition.normal),
-                          ExcMessage(
-                            "'Boundary " + std::to_string(id) +
-                            "/Foundation normal' points into the body; it goes "
-                            "from the body into the foundation."));
+              if (!faces_towards(triangulation, id, condition.normal))
+                refuse("'Boundary " + std::to_string(id) +
+                       "/Foundation normal' points into the body; it goes from "
+                       "the body into the foundation.");
               continue;
             }
           condition.normal = piece.normal;
@@ -212,19 +206,18 @@ namespace Viscoplastic
                 inspect_curve(side, largest_angle(triangulation, side));
               continue;
             }
-          AssertThrow(piece.deviation <= tolerance,
-                      ExcMessage(
-                        "Boundary " + std::to_string(id) + " has the role " +
-                        name_of(condition.role) +
-                        " but is not flat: its normals deviate by " +
-                        as_text(piece.deviation) +
-                        " degrees from their mean, and 'Geometry/Flatness "
-                        "tolerance' is " +
-                        as_text(tolerance) +
-                        "; give each flat piece a boundary id of its own" +
-                        (condition.is_unilateral() ?
-                           ", or the foundation a 'Foundation normal'." :
-                           ".")));
+          if (!(piece.deviation <= tolerance))
+            refuse("Boundary " + std::to_string(id) + " has the role " +
+                   name_of(condition.role) +
+                   " but is not flat: its normals deviate by " +
+                   as_text(piece.deviation) +
+                   " degrees from their mean, and 'Geometry/Flatness "
+                   "tolerance' is " +
+                   as_text(tolerance) +
+                   "; give each flat piece a boundary id of its own" +
+                   (condition.is_unilateral() ?
+                      ", or the foundation a 'Foundation normal'." :
+                      "."));
         }
   }
 
@@ -239,16 +232,15 @@ namespace Viscoplastic
     for (const auto &[id, condition] : boundary)
       if (condition.against)
         for (const auto &[other_id, other] : boundary)
-          AssertThrow(
-            other_id == id || touching.count({id, other_id}) == 0 ||
-              (other.role != BoundaryRole::contact && !is_other_side(other_id)),
-            ExcMessage(
+          if (other_id != id && touching.count({id, other_id}) != 0 &&
+              (other.role == BoundaryRole::contact || is_other_side(other_id)))
+            refuse(
               "Boundary " + std::to_string(id) +
               ", which is in contact with another body, has nodes in common "
               "with boundary " +
               std::to_string(other_id) +
               ", which is in contact, too; a node can be in contact with one "
-              "other body or foundation. Leave a face between them free."));
+              "other body or foundation. Leave a face between them free.");
   }
 
 
@@ -283,11 +275,10 @@ namespace Viscoplastic
   {
     if (!temperature)
       return;
-    AssertThrow(
-      !has_source(),
-      ExcMessage(
+    if (has_source())
+      refuse(
         "'Exact solution/Data' = solution makes no data for a body with a "
-        "temperature; leave 'Temperature/Value' out, or use 'Data' = scene."));
+        "temperature; leave 'Temperature/Value' out, or use 'Data' = scene.");
     bool is_used = has_thermal_strain();
     for (const auto &material : materials)
       {
@@ -344,12 +335,11 @@ namespace Viscoplastic
       {
         const auto section = "Material " + std::to_string(id);
         const auto given   = parameters.materials.find(id);
-        AssertThrow(given != parameters.materials.end(),
-                    ExcMessage("Cells of the mesh have the material id " +
-                               std::to_string(id) +
-                               ", but there is no `subsection " + section +
-                               "'; the mesh has the material ids " + list(ids) +
-                               "."));
+        if (given == parameters.materials.end())
+          refuse("Cells of the mesh have the material id " +
+                 std::to_string(id) + ", but there is no `subsection " +
+                 section + "'; the mesh has the material ids " + list(ids) +
+                 ".");
         MaterialParameters named = given->second;
         if (names.has("material", id))
           named.name = names.of("material", id);

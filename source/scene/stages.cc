@@ -27,13 +27,12 @@ namespace Viscoplastic
       if (t >= schedule.end_time() * (1. - rounding))
         return {};
       const double end = schedule.phase_at(t * (1. - rounding)).end;
-      AssertThrow(
-        std::abs(end - t) <= rounding * t,
-        ExcMessage("'" + entry + "' = " + as_text(t) +
-                   " is not the end of a phase. The body changes between two "
-                   "phases of 'Time/Phases': let one end then; the present one "
-                   "ends at t = " +
-                   as_text(end) + "."));
+      if (!(std::abs(end - t) <= rounding * t))
+        refuse(
+          "'" + entry + "' = " + as_text(t) +
+          " is not the end of a phase. The body changes between two phases of "
+          "'Time/Phases': let one end then; the present one ends at t = " +
+          as_text(end) + ".");
       return end;
     }
   } // namespace
@@ -56,17 +55,14 @@ namespace Viscoplastic
           if (!std::isfinite(t))
             return t;
           const std::string path = material.section + "/" + name;
-          AssertThrow(
-            !parameters.materials.empty(),
-            ExcMessage("'" + path +
-                       "' would be that of the whole body; give numbers to the "
-                                     "materials, of which one has to stay."));
-          AssertThrow(
-            !has_source(),
-            ExcMessage(
-              "'" + path +
-              "' contradicts 'Exact solution/Data' = solution, which is "
-                            "that of one body."));
+          if (parameters.materials.empty())
+            refuse("'" + path +
+                   "' would be that of the whole body; give numbers to the "
+                                 "materials, of which one has to stay.");
+          if (has_source())
+            refuse("'" + path +
+                   "' contradicts 'Exact solution/Data' = solution, which is "
+                                 "that of one body.");
           changing.insert(id);
           if (name == "Added at" && !keeps_history_at_points())
             warnings.push_back(
@@ -109,14 +105,14 @@ namespace Viscoplastic
     for (unsigned int n = 0; n <= stage_ends.size(); ++n)
       {
         enter_stage(n);
-        AssertThrow(
-          std::any_of(material_of_id.begin(),
-                      material_of_id.end(),
-                      [](const auto &pair) { return !pair.second->is_absent; }),
-          ExcMessage("'Added at' and 'Removed at' leave no material " +
-                     (n == 0 ?
-                        "at the beginning." :
-                        "from t = " + as_text(stage_ends[n - 1]) + " on.")));
+        if (!std::any_of(material_of_id.begin(),
+                         material_of_id.end(),
+                         [](const auto &pair) {
+                           return !pair.second->is_absent;
+                         }))
+          refuse("'Added at' and 'Removed at' leave no material " +
+                 (n == 0 ? "at the beginning." :
+                           "from t = " + as_text(stage_ends[n - 1]) + " on."));
       }
     enter_stage(0);
     inspect_contact_of_stages(changing, triangulation);
@@ -138,14 +134,12 @@ namespace Viscoplastic
           {
             const types::boundary_id id = cell->face(f)->boundary_id();
             const bool is_changed = changing.count(cell->material_id()) == 1;
-            AssertThrow(
-              !is_changed || !boundary.at(id).has_springs(),
-              ExcMessage(
-                "Boundary " + std::to_string(id) +
-                " has springs and a part in '" +
-                material(cell->material_id()).section +
-                "', which is added or removed; the pieces with springs "
-                "have to stay the same."));
+            if (is_changed && boundary.at(id).has_springs())
+              refuse("Boundary " + std::to_string(id) +
+                     " has springs and a part in '" +
+                     material(cell->material_id()).section +
+                     "', which is added or removed; the pieces with springs "
+                     "have to stay the same.");
             has_changing_contact |=
               is_changed && (boundary.at(id).role == BoundaryRole::contact ||
                              is_other_side(id));
@@ -181,14 +175,12 @@ namespace Viscoplastic
           if (is_present(cell->material_id()))
             present.insert(first[cell->vertex_index(0)]);
         for (const auto &cell : others)
-          AssertThrow(
-            present.count(first[cell->vertex_index(0)]) == 1,
-            ExcMessage(
-              "'" + lasting_material(cell->material_id()).section +
-              "' is absent for a time, and with it the whole of a body "
-              "that another one is 'Against'. Let the body that comes or "
-              "goes have the contact, 'Against' the one that stays: it "
-              "follows that until it comes."));
+          if (present.count(first[cell->vertex_index(0)]) != 1)
+            refuse("'" + lasting_material(cell->material_id()).section +
+                   "' is absent for a time, and with it the whole of a body "
+                   "that another one is 'Against'. Let the body that comes or "
+                   "goes have the contact, 'Against' the one that stays: it "
+                   "follows that until it comes.");
       }
     enter_stage(0);
   }

@@ -30,19 +30,17 @@ namespace Viscoplastic
           if (name.empty())
             continue;
           const std::size_t d = std::string("xyz").substr(0, dim).find(name);
-          AssertThrow(name.size() == 1 && d != std::string::npos,
-                      ExcMessage("'" + entry + "': '" + excerpt(support) +
-                                 "' holds '" + excerpt(name) +
-                                 "', but components are " +
-                                 (dim == 2 ? "x and y." : "x, y and z.")));
+          if (name.size() != 1 || d == std::string::npos)
+            refuse("'" + entry + "': '" + excerpt(support) + "' holds '" +
+                   excerpt(name) + "', but components are " +
+                   (dim == 2 ? "x and y." : "x, y and z."));
           is_held[d] = any = true;
         }
-      AssertThrow(any,
-                  ExcMessage("'" + entry + "': '" + excerpt(support) +
-                             "' holds nothing; write `" +
-                             (entry == "Supports/Points" ? "coordinates" :
-                                                           "boundary ids") +
-                             ": components', such as x y."));
+      if (!any)
+        refuse("'" + entry + "': '" + excerpt(support) +
+               "' holds nothing; write `" +
+               (entry == "Supports/Points" ? "coordinates" : "boundary ids") +
+               ": components', such as x y.");
       std::string result;
       for (unsigned int d = 0; d < dim; ++d)
         result += std::string(d == 0 ? "" : "; ") + (is_held[d] ? "0" : "free");
@@ -57,18 +55,16 @@ namespace Viscoplastic
       std::set<types::boundary_id> result;
       for (const std::string &id : Utilities::split_string_list(text, ','))
         {
-          AssertThrow(!id.empty() && id.size() < 10 &&
-                        id.find_first_not_of("0123456789") == std::string::npos,
-                      ExcMessage("'Supports/Edges': '" + excerpt(id) +
-                                 "' in '" + excerpt(support) +
-                                 "' is no boundary id."));
+          if (id.empty() || id.size() >= 10 ||
+              id.find_first_not_of("0123456789") != std::string::npos)
+            refuse("'Supports/Edges': '" + excerpt(id) + "' in '" +
+                   excerpt(support) + "' is no boundary id.");
           result.insert(Utilities::string_to_int(id));
         }
-      AssertThrow(result.size() > 1,
-                  ExcMessage(
-                    "'Supports/Edges': '" + excerpt(support) +
-                    "' names one boundary; an edge is where at least two meet, "
-                    "such as `1, 3: y'."));
+      if (result.size() <= 1)
+        refuse("'Supports/Edges': '" + excerpt(support) +
+               "' names one boundary; an edge is where at least two meet, such "
+               "as `1, 3: y'.");
       return result;
     }
 
@@ -167,34 +163,30 @@ namespace Viscoplastic
                     here             = ids;
                   }
               }
-            AssertThrow(
-              nearest <= vertex_tolerance * size,
-              ExcMessage(
-                "'Supports/Points': there is no vertex of the coarse mesh "
-                "at (" +
-                as_text(given) + "); the nearest one is at (" +
-                as_text(*support.position) +
-                "). More cells in the coarse mesh have more vertices."));
+            if (!(nearest <= vertex_tolerance * size))
+              refuse("'Supports/Points': there is no vertex of the coarse mesh "
+                     "at (" +
+                     as_text(given) + "); the nearest one is at (" +
+                     as_text(*support.position) +
+                     "). More cells in the coarse mesh have more vertices.");
           }
         else
           {
             for (const types::boundary_id id : here)
-              AssertThrow(boundary.count(id) == 1,
-                          ExcMessage("'Supports/Edges': there is no boundary " +
-                                     std::to_string(id) +
-                                     "; the mesh has the ids " +
-                                     list(boundary_ids(triangulation)) + "."));
-            AssertThrow(
-              std::any_of(vertices.begin(),
-                          vertices.end(),
-                          [&here](const auto &vertex) {
-                            return std::includes(vertex.second.begin(),
-                                                 vertex.second.end(),
-                                                 here.begin(),
-                                                 here.end());
-                          }),
-              ExcMessage("'Supports/Edges': boundaries " + list(here) +
-                         " do not meet."));
+              if (boundary.count(id) != 1)
+                refuse("'Supports/Edges': there is no boundary " +
+                       std::to_string(id) + "; the mesh has the ids " +
+                       list(boundary_ids(triangulation)) + ".");
+            if (!std::any_of(vertices.begin(),
+                             vertices.end(),
+                             [&here](const auto &vertex) {
+                               return std::includes(vertex.second.begin(),
+                                                    vertex.second.end(),
+                                                    here.begin(),
+                                                    here.end());
+                             }))
+              refuse("'Supports/Edges': boundaries " + list(here) +
+                     " do not meet.");
           }
         for (const types::boundary_id id : here)
           if (const BoundaryCondition<dim> &other = boundary.at(id);

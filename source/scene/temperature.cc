@@ -11,8 +11,8 @@ namespace Viscoplastic
     if (Utilities::trim(text).empty())
       return {};
     const Expression<1> number(text, entry);
-    AssertThrow(!number.depends_on_position() && !number.depends_on_time(),
-                ExcMessage("'" + entry + "' = " + text + " is not a number."));
+    if (number.depends_on_position() || number.depends_on_time())
+      refuse("'" + entry + "' = " + text + " is not a number.");
     return number.value(Point<1>(), 0.);
   }
 
@@ -22,8 +22,8 @@ namespace Viscoplastic
   optional_positive_number(const std::string &text, const std::string &entry)
   {
     const auto result = optional_number(text, entry);
-    AssertThrow(!result || *result > 0.,
-                ExcMessage("'" + entry + "' = " + text + " is not positive."));
+    if (result && !(*result > 0.))
+      refuse("'" + entry + "' = " + text + " is not positive.");
     return result;
   }
 
@@ -60,10 +60,9 @@ namespace Viscoplastic
   {
     if (!Utilities::trim(parameters.value).empty())
       return std::make_unique<const Temperature<dim>>(parameters, units);
-    AssertThrow(
-      parameters.reference.empty() && parameters.gas_constant.empty(),
-      ExcMessage(
-        "'Temperature' has no `Value', so that its other entries mean nothing."));
+    if (!parameters.reference.empty() || !parameters.gas_constant.empty())
+      refuse("'Temperature' has no `Value', so that its other entries mean "
+             "nothing.");
     return nullptr;
   }
 

@@ -171,10 +171,10 @@ namespace Viscoplastic
               std::max(report.relative_error, change / sum);
             return report;
           }
-        AssertThrow(report.bound_iterations < parameters.maximal_iterations,
-                    ExcMessage(no_fixed_point(report.bound_iterations,
-                                              change / sum,
-                                              change / last_change)));
+        if (!(report.bound_iterations < parameters.maximal_iterations))
+          refuse(no_fixed_point(report.bound_iterations,
+                                change / sum,
+                                change / last_change));
         // Pressures may oscillate between two states, since friction may hold
         // what would press, as where pieces meet. Then relax the bounds by
         // Aitken's rule.

@@ -301,8 +301,8 @@ namespace Viscoplastic
     const State<dim>         &state   = solution.state;
     error =
       tangent.norm(difference(state.z, tangent.extrapolate(z, at, state.u)));
-    AssertThrow(std::isfinite(error),
-                ExcMessage("Newton's method met a value that is not finite."));
+    if (!std::isfinite(error))
+      refuse("Newton's method met a value that is not finite.");
     DistributedVector product(u);
     tangent.matrix().vmult(product, u);
     // Rounding of stresses does not vanish with u.
@@ -324,7 +324,7 @@ namespace Viscoplastic
             << " at best, and the tolerance is " << tolerance
             << " ('Solver/Contact tolerance'); take more steps in "
                "'Time/Phases'.";
-    AssertThrow(false, ExcMessage(message.str()));
+    refuse(message.str());
   }
 
 

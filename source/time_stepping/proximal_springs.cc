@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <viscoplastic_contact/base/messages.h>
 #include <viscoplastic_contact/contact/kink_search.h>
 #include <viscoplastic_contact/time_stepping/proximal_springs.h>
 
@@ -128,13 +129,12 @@ namespace Viscoplastic
         force.scale(motion);
         held = springs;
         held.scale(motion);
-        AssertThrow(
-          force.l2_norm() <= 0.1 * (motion * held),
-          ExcMessage(
+        if (!(force.l2_norm() <= 0.1 * (motion * held)))
+          refuse(
             "The stiffness of the body differs so much from place to place "
             "that its rigid motions, which only contact prevents, are lost in "
             "rounding. Let materials differ by less (a factor of 1e8 is safe), "
-            "or prescribe displacements where the body is stiff."));
+            "or prescribe displacements where the body is stiff.");
       }
     return regular_matrix;
   }
@@ -226,21 +226,19 @@ namespace Viscoplastic
                   given = statics(problem, bounds, false);
     if (own.is_balanced && given.is_balanced)
       return bounds;
-    AssertThrow(
-      follows && own.is_balanced,
-      ExcMessage(
-        "No contact force balances the loads: they do work on a " +
-        discretization.space.name_of_motion(follows ? own.motion :
-                                                      given.motion) +
-        " of the body, which contact that opens and friction cannot prevent. "
-        "Let the loads press the body onto its foundation, or prescribe "
-        "displacements that hold it." +
-        (!follows && face.has_computed_pressure() &&
-             with_pressure().is_balanced ?
-           " With the pressure of the step before, Coulomb's law has no "
-           "friction in the step in which contact begins; 'Solver/Coulomb "
-           "pressure' = Newton has." :
-           "")));
+    if (!follows || !own.is_balanced)
+      refuse("No contact force balances the loads: they do work on a " +
+             discretization.space.name_of_motion(follows ? own.motion :
+                                                           given.motion) +
+             " of the body, which contact that opens and friction cannot "
+             "prevent. Let the loads press the body onto its foundation, or "
+             "prescribe displacements that hold it." +
+             (!follows && face.has_computed_pressure() &&
+                  with_pressure().is_balanced ?
+                " With the pressure of the step before, Coulomb's law has no "
+                "friction in the step in which contact begins; 'Solver/Coulomb "
+                "pressure' = Newton has." :
+                ""));
     // Take the bounds of the pressures in the equilibrium found.
     ContactState        state(bounds);
     std::vector<double> result = problem.given_bounds;
@@ -465,7 +463,7 @@ namespace Viscoplastic
         if (discretization.face->has_normal_compliance() && !learns)
           settle_whole(problem, body, contact, old_u, center, u);
       }
-    AssertThrow(false, ExcMessage(restlessness(change, left_by_rounding)));
+    refuse(restlessness(change, left_by_rounding));
     return report;
   }
 

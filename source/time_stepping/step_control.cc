@@ -92,7 +92,8 @@ namespace Viscoplastic
           std::ostringstream message;
           message << "'Step control/Landing times': '" << excerpt(entry)
                   << "' is not a time between 0 and " << end_time << ".";
-          AssertThrow(time > 0. && time <= end_time, ExcMessage(message.str()));
+          if (!(time > 0.) || !(time <= end_time))
+            refuse(message.str());
           times.push_back(time);
         }
       std::sort(times.begin(), times.end());
@@ -139,18 +140,17 @@ namespace Viscoplastic
     , tolerance_of_run(tolerance_of_run)
     , landing_times(read_times(parameters.landing_times, schedule.end_time()))
   {
-    AssertThrow(is_on || landing_times.empty(),
-                ExcMessage("'Step control/Landing times' are given, but the "
-                           "steps are those of 'Time/Phases'; give 'Step "
-                           "control/Tolerance' or 'Error control/Tolerance', "
-                           "or put the times into the phases."));
+    if (!is_on && !landing_times.empty())
+      refuse("'Step control/Landing times' are given, but the steps are those "
+             "of 'Time/Phases'; give 'Step control/Tolerance' or 'Error "
+             "control/Tolerance', or put the times into the phases.");
     std::ostringstream message;
     message << "'Step control/Smallest step' = " << parameters.smallest_step
             << " is larger than 'Step control/Largest step' = "
             << parameters.largest_step << ".";
-    AssertThrow(parameters.largest_step == 0. ||
-                  parameters.smallest_step <= parameters.largest_step,
-                ExcMessage(message.str()));
+    if (parameters.largest_step != 0. &&
+        !(parameters.smallest_step <= parameters.largest_step))
+      refuse(message.str());
   }
 
 
@@ -249,8 +249,8 @@ namespace Viscoplastic
                 << " would take " << distance / limit
                 << " steps until t = " << target
                 << "; set 'Time/Scheme' = backward Euler.";
-        AssertThrow(distance <= most_divisions * limit,
-                    ExcMessage(message.str()));
+        if (!(distance <= most_divisions * limit))
+          refuse(message.str());
         k = std::min(k, limit);
       }
     // Take equal steps up to the target where few are left, to avoid a tiny
@@ -264,7 +264,8 @@ namespace Viscoplastic
     std::ostringstream message;
     message << "The time step " << k << " is too small to change the time " << t
             << ".";
-    AssertThrow(end > t, ExcMessage(message.str()));
+    if (!(end > t))
+      refuse(message.str());
     return {n + 1, t, end, end - t};
   }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <deal.II/base/timer.h>
 
+#include <viscoplastic_contact/base/messages.h>
 #include <viscoplastic_contact/discretization/bulk_system.h>
 #include <viscoplastic_contact/time_stepping/step_solver.h>
 
@@ -196,7 +197,8 @@ namespace Viscoplastic
       << "Rounding alone makes " << left / size
       << " or more of the solution. Cells that are less flat, stiffness "
          "that differs less or Poisson's ratio farther from 1/2 mend that.";
-    AssertThrow(left <= largest_rounding * size, ExcMessage(message.str()));
+    if (!(left <= largest_rounding * size))
+      refuse(message.str());
     if (!(left > std::max(report.error, report.tolerance * size)))
       return;
     report.error          = left;

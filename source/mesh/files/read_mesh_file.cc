@@ -93,9 +93,8 @@ namespace Viscoplastic
       if (Utilities::MPI::this_mpi_process(communicator) == 0)
         result = run_script(name, plane_model);
       result = Utilities::MPI::broadcast(communicator, result, 0);
-      AssertThrow(result.second.empty(),
-                  ExcMessage("The mesh file '" + name + "' " + result.second +
-                             "."));
+      if (!result.second.empty())
+        refuse("The mesh file '" + name + "' " + result.second + ".");
       return std::move(result.first);
     }
 
@@ -108,17 +107,19 @@ namespace Viscoplastic
       const std::string     it = "The mesh file '" + name + "' ";
       std::error_code       error;
       const fs::file_status status = fs::status(name, error);
-      AssertThrow(fs::exists(status), ExcMessage(it + "does not exist."));
-      AssertThrow(!fs::is_directory(status),
-                  ExcMessage(it + "is a directory."));
-      AssertThrow(fs::is_regular_file(status),
-                  ExcMessage(it + "is not a regular file."));
+      if (!fs::exists(status))
+        refuse(it + "does not exist.");
+      if (fs::is_directory(status))
+        refuse(it + "is a directory.");
+      if (!fs::is_regular_file(status))
+        refuse(it + "is not a regular file.");
       std::ifstream input(name, std::ios::binary);
-      AssertThrow(input, ExcMessage(it + "cannot be opened."));
+      if (!input)
+        refuse(it + "cannot be opened.");
       std::string text{std::istreambuf_iterator<char>(input),
                        std::istreambuf_iterator<char>()};
-      AssertThrow(text.find_first_not_of(" \t\r\n") != std::string::npos,
-                  ExcMessage(it + "is empty."));
+      if (text.find_first_not_of(" \t\r\n") == std::string::npos)
+        refuse(it + "is empty.");
       return text;
     }
 

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <viscoplastic_contact/base/messages.h>
 #include <viscoplastic_contact/checkpoint/checkpoint.h>
 #include <viscoplastic_contact/mesh/cell_order.h>
 

@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <deal.II/base/exceptions.h>
 
 #include <viscoplastic_contact/base/messages.h>
 #include <viscoplastic_contact/contact/normal_compliance.h>
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 
 namespace Viscoplastic

@@ -2,7 +2,7 @@
 #include <viscoplastic_contact/base/largest_place.h>
 #include <viscoplastic_contact/base/messages.h>
 #include <viscoplastic_contact/base/number_range.h>
-#include <viscoplastic_contact/contact/contact_solver.h>
+#include <viscoplastic_contact/contact/contact_points.h>
 #include <viscoplastic_contact/discretization/compatibility.h>
 #include <viscoplastic_contact/discretization/initial_state.h>
 #include <viscoplastic_contact/discretization/springs.h>

@@ -2,7 +2,6 @@
 #include <deal.II/base/mpi.h>
 #include <deal.II/base/qprojector.h>
 #include <deal.II/base/quadrature_lib.h>
-#include <deal.II/fe/fe_values.h>
 #include <deal.II/grid/manifold.h>
 
 #include <viscoplastic_contact/base/messages.h>
@@ -11,7 +10,6 @@
 #include <viscoplastic_contact/discretization/plane_faces.h>
 #include <viscoplastic_contact/discretization/thermal_strain.h>
 #include <viscoplastic_contact/error/residual_estimator.h>
-#include <viscoplastic_contact/mesh/cell_order.h>
 
 #include <algorithm>
 #include <cmath>

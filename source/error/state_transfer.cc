@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <viscoplastic_contact/base/number_range.h>
 #include <viscoplastic_contact/error/state_transfer.h>
-#include <viscoplastic_contact/mesh/cell_order.h>
 
 namespace Viscoplastic
 {

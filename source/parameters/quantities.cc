@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <deal.II/base/utilities.h>
 
 #include <viscoplastic_contact/base/messages.h>
 #include <viscoplastic_contact/parameters/dimension_check.h>

@@ -5,7 +5,6 @@
 #include <viscoplastic_contact/parameters/parameter_text.h>
 #include <viscoplastic_contact/parameters/table_sections.h>
 
-#include <algorithm>
 #include <filesystem>
 
 namespace Viscoplastic

@@ -2,7 +2,6 @@
 #include "vtu_output.h"
 #include <viscoplastic_contact/base/files.h>
 #include <viscoplastic_contact/base/messages.h>
-#include <viscoplastic_contact/base/number_range.h>
 #include <viscoplastic_contact/discretization/initial_state.h>
 #include <viscoplastic_contact/error/solution_errors.h>
 #include <viscoplastic_contact/error/space_estimator.h>

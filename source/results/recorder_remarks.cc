@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <viscoplastic_contact/base/messages.h>
 #include <viscoplastic_contact/base/types.h>
-#include <viscoplastic_contact/discretization/initial_state.h>
 #include <viscoplastic_contact/error/memory_bound.h>
 #include <viscoplastic_contact/mesh/mesh_size.h>
 #include <viscoplastic_contact/results/recorder.h>

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <deal.II/base/exceptions.h>
 
 #include <viscoplastic_contact/base/messages.h>
 #include <viscoplastic_contact/error/error_budget.h>

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <viscoplastic_contact/base/messages.h>
 #include <viscoplastic_contact/time_stepping/time_stepper.h>
 
 namespace Viscoplastic

@@ -4,7 +4,6 @@
 #include <deal.II/base/function_parser.h>
 #include <deal.II/base/point.h>
 
-#include <array>
 #include <functional>
 #include <memory>
 #include <optional>

@@ -10,7 +10,6 @@
 #include <viscoplastic_contact/time_stepping/time_stepper.h>
 
 #include <map>
-#include <optional>
 #include <string>
 #include <vector>
 

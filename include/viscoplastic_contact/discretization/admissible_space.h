@@ -10,7 +10,6 @@
 #include <viscoplastic_contact/mesh/plane_model.h>
 #include <viscoplastic_contact/scene/scene.h>
 
-#include <array>
 #include <map>
 #include <memory>
 #include <optional>

@@ -13,7 +13,6 @@
 #include <viscoplastic_contact/scene/scene.h>
 
 #include <memory>
-#include <vector>
 
 namespace Viscoplastic
 {

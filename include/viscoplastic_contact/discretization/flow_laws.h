@@ -6,7 +6,6 @@
 #include <viscoplastic_contact/laws/viscoplastic_law.h>
 
 #include <array>
-#include <map>
 #include <vector>
 
 namespace Viscoplastic

@@ -5,7 +5,6 @@
 #include <viscoplastic_contact/linear_solvers/block_rows.h>
 
 #include <cstddef>
-#include <functional>
 #include <utility>
 #include <vector>
 

@@ -3,7 +3,6 @@
 
 #include <viscoplastic_contact/base/units.h>
 
-#include <cstdint>
 #include <fstream>
 #include <string>
 #include <vector>

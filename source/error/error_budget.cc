@@ -58,5 +58,4 @@ namespace Viscoplastic
         std::sqrt((of_meshes - errors.history) * (of_meshes + errors.history));
     return std::max(least_space_share * all, left);
   }
-
 } // namespace Viscoplastic

@@ -115,9 +115,6 @@ namespace Viscoplastic
              " somewhere in it; it has to be positive (1 in a " +
              (dim == 2 ? "rectangle" : "box") + ").");
     }
-
-
-
   } // namespace
 
 

@@ -19,9 +19,6 @@ namespace Viscoplastic
     using Tree = boost::property_tree::ptree;
 
     const std::string shared_libraries_entry = "Additional shared libraries";
-
-
-
   } // namespace
 
 
@@ -136,9 +133,12 @@ namespace Viscoplastic
       }
     catch (const ParameterHandler::ExcCannotParseLine &)
       {
-        refuse_line(line().name.empty() ?
-                      no_statement(line().text) :
-                      unknown_name(line(), declared_entries(handler)));
+        refuse_line(
+          line().name.empty() ?
+            "'" + excerpt(line().text) +
+              "' is no statement; a line is `set Entry = value', `subsection "
+              "Name', `end', `include file', or a comment after `#'." :
+            unknown_name(line(), declared_entries(handler)));
       }
   }
 

@@ -6,8 +6,6 @@
 #include <viscoplastic_contact/base/types.h>
 #include <viscoplastic_contact/parameters/parameter_text.h>
 
-#include <nlohmann/json.hpp>
-
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
@@ -52,23 +50,6 @@ namespace Viscoplastic
         text.erase(0, 3);
       std::replace(text.begin(), text.end(), '\t', ' ');
       return text;
-    }
-
-
-
-    /// Values have to be valid UTF-8, since they are written as JSON.
-    bool
-    is_utf8(const std::string &text)
-    {
-      try
-        {
-          nlohmann::json(text).dump();
-          return true;
-        }
-      catch (const nlohmann::json::type_error &)
-        {
-          return false;
-        }
     }
 
 
@@ -243,10 +224,6 @@ namespace Viscoplastic
             if (line.value.find('{') != std::string::npos)
               refuse(line.origin() + ": '" + excerpt(path) + "' is '" +
                      excerpt(line.value) + "'; a value cannot contain `{'.");
-            if (!is_utf8(line.value))
-              refuse(line.origin() + ": '" + excerpt(path) +
-                     "' has bytes that are no text in UTF-8; save the file in "
-                     "that encoding.");
           }
         lines.push_back(std::move(line));
       }

@@ -52,27 +52,6 @@ namespace Viscoplastic
           }
       return names;
     }
-
-
-
-    /// Return the path of a line with `/' for each `.' in its name if it begins
-    /// with a subsection; otherwise an empty string.
-    std::string
-    with_slashes(const ParameterLine &line, const Entries &entries)
-    {
-      const std::size_t dot = line.name.find('.');
-      if (dot == std::string::npos)
-        return "";
-      std::string path = line.section + line.name;
-      std::replace(path.begin(), path.end(), '.', '/');
-      const std::string section = path.substr(0, path.find('/'));
-      const std::string kind    = section.substr(0, section.find(' '));
-      return contains(names_in("", entries, true), section) ||
-                 ((kind == "Boundary" || kind == "Material") &&
-                  kind != section) ?
-               path :
-               "";
-    }
   } // namespace
 
 
@@ -102,31 +81,13 @@ namespace Viscoplastic
         for (const std::string kind : {"Boundary ", "Material ", "Table "})
           if (id < line.name.size())
             outermost.push_back(kind + line.name.substr(id));
-        if (line.number > 0 && !parent.empty() &&
-            contains(outermost, line.name))
-          {
-            const ParameterLine *around = &line;
-            do
-              --around;
-            while (!around->is_opening ||
-                   around->section + around->name != parent);
-            return said +
-                   ", which stands outside of others; is there no `end' to "
-                   "the one that begins in line " +
-                   std::to_string(around->number) + "?";
-          }
+        if (!parent.empty() && contains(outermost, line.name))
+          return said +
+                 ", which stands outside of others; is there no `end' to '" +
+                 excerpt(parent) + "'?";
       }
     else
       {
-        const std::string path = with_slashes(line, entries);
-        if (!path.empty())
-          return said + (line.number == 0 ?
-                           "; subsections are separated by `/', as in '" +
-                             excerpt(path) + "'." :
-                           "; it is `set " +
-                             excerpt(path.substr(path.rfind('/') + 1)) +
-                             "' within `subsection " +
-                             excerpt(path.substr(0, path.find('/'))) + "'.");
         if (contains(names_in(line.section, entries, true), line.name))
           return said + "; that is the name of a subsection.";
         if (contains(outermost, line.name))
@@ -144,38 +105,19 @@ namespace Viscoplastic
                  enumeration(owners, 6) + ".";
       }
 
-    const Names candidates =
+    Names candidates =
       parent.empty() ? outermost : names_in(line.section, entries, opens);
-    const std::string several = opens ? "subsections" : "entries";
-    return said + did_you_mean(line.name,
-                               candidates,
-                               candidates.empty() ?
-                                 "; it has no " + several + "." :
-                                 "; its " + several + " are: " +
-                                   enumeration(candidates, 30) + ".");
-  }
-
-
-
-  std::string
-  no_statement(const std::string &text)
-  {
-    const std::string word = text.substr(0, text.find(' '));
-    const std::string said = "'" + excerpt(text) + "' ";
-    if (word == "set")
-      return said +
-             (text.find('=') == std::string::npos ? "has no `='" :
-                                                    "has no name before `='") +
-             "; it must be `set Entry = value'.";
-    if (word == "end")
-      return "`end' stands alone on its line, but '" +
-             excerpt(Utilities::trim(text.substr(3))) + "' follows.";
-    if (word == "subsection" || word == "include")
-      return "`" + word + "' needs a " + (word == "include" ? "file" : "name") +
-             " after it.";
-    return said + "is no statement; a line is `set Entry = value', "
-                  "`subsection Name', `end', `include file', or a comment "
-                  "after `#'.";
+    const std::string several   = opens ? "subsections" : "entries",
+                      otherwise = candidates.empty() ?
+                                    "; it has no " + several + "." :
+                                    "; its " + several +
+                                      " are: " + enumeration(candidates, 30) +
+                                      ".";
+    // Whole paths are written in the wrong way, as `Time.Phases'.
+    if (!opens)
+      for (const auto &[path, value] : entries)
+        candidates.push_back(path);
+    return said + did_you_mean(line.name, candidates, otherwise);
   }
 
 

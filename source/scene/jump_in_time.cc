@@ -46,9 +46,6 @@ namespace Viscoplastic
         }
       return steps;
     }
-
-
-
   } // namespace
 
 

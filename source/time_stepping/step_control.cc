@@ -421,5 +421,4 @@ namespace Viscoplastic
     present.wanted       = shorter;
     return true;
   }
-
 } // namespace Viscoplastic

@@ -141,7 +141,7 @@ class Refused(TestCase):
             "include SLAB\nsubsection Time\n  set Phases = 1: 1\n",
             r"scene\.prm', line 2: the subsection 'Time' has no `end'\.$",
         ),
-        ("set Dimension 2", "line 1: 'set Dimension 2' has no `='"),
+        ("set Dimension 2", "line 1: 'set Dimension 2' is no statement"),
         ("solid cube\n", "line 1: 'solid cube' is no statement"),
         ("\ninclude common.prm", r"line 2: the included file '.*common\.prm' does"),
         (
@@ -193,12 +193,12 @@ class Refused(TestCase):
         self.refused_text(
             "include SLAB\n",
             r"--set 'Time\.Phases=1: 4': there is no entry 'Time\.Phases' outside of "
-            r"subsections; subsections are separated by `/', as in 'Time/Phases'\.$",
+            r"subsections; did you mean 'Time/Phases'\?$",
             more=["--set", "Time.Phases=1: 4"],
         )
         self.refused_text(
             "include SLAB\nset Boundary 0.Traction = 0; 0\n",
-            r"line 2: .* it is `set Traction' within `subsection Boundary 0'\.$",
+            r"line 2: .*; did you mean 'Boundary 0/Traction'\?$",
         )
 
     def test_wrong_assignment_on_the_command_line(self):

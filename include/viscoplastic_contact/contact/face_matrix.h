@@ -81,5 +81,4 @@ namespace Viscoplastic
   private:
     FullMatrix<double> values;
   };
-
 } // namespace Viscoplastic

@@ -111,5 +111,4 @@ namespace Viscoplastic
   private:
     const double time_share;
   };
-
 } // namespace Viscoplastic

@@ -18,10 +18,6 @@ namespace Viscoplastic
   unknown_name(const ParameterLine               &line,
                const boost::property_tree::ptree &declared);
 
-  /// Return a sentence about a line that ParameterHandler cannot parse.
-  std::string
-  no_statement(const std::string &text);
-
   /// Return a sentence with the values that the entry of the line allows.
   std::string
   wrong_value(const ParameterLine               &line,

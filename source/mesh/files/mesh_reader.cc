@@ -150,7 +150,4 @@ namespace Viscoplastic
       fail("elements of type " + quoted(type) + " are not supported");
     return found->second;
   }
-
-
-
 } // namespace Viscoplastic

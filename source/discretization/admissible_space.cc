@@ -89,7 +89,7 @@ namespace Viscoplastic
                 continue;
               }
             if (Utilities::MPI::max(result[id].size(),
-                                    dof_handler.get_communicator()) <= 0)
+                                    dof_handler.get_communicator()) == 0)
               refuse(
                 "Nothing of boundary " + std::to_string(*condition.against) +
                 " lies opposite to the nodes of boundary " +

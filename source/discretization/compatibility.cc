@@ -7,8 +7,6 @@
 #include <viscoplastic_contact/discretization/initial_state.h>
 #include <viscoplastic_contact/discretization/springs.h>
 
-#include <sstream>
-
 namespace Viscoplastic
 {
   namespace
@@ -130,16 +128,13 @@ namespace Viscoplastic
         for (const auto &[node, row] : rows)
           chords = std::max(chords, std::abs(row.bulge));
       chords = Utilities::MPI::max(chords, space.communicator);
-      std::ostringstream message;
-      message
-        << "At t = 0 the body is inside of the foundation of unilateral "
-           "contact, by "
-        << deepest
-        << ": 'Gap' and 'Foundation displacement' add up to less than "
-           "'Initial state/Displacement' takes of it; let them begin with "
-           "a gap of zero or more, or set 'Initial state/Equilibrate'.";
       if (!(deepest <= std::max(1e-8 * size, 0.1 * chords)))
-        refuse(message.str());
+        refuse("At t = 0 the body is inside of the foundation of unilateral "
+               "contact, by " +
+               as_text(deepest) +
+               ": 'Gap' and 'Foundation displacement' add up to less than "
+               "'Initial state/Displacement' takes of it; let them begin with "
+               "a gap of zero or more, or set 'Initial state/Equilibrate'.");
     }
 
 

@@ -4,7 +4,6 @@
 #include <viscoplastic_contact/discretization/flow_laws.h>
 #include <viscoplastic_contact/laws/backward_euler.h>
 
-#include <sstream>
 
 namespace Viscoplastic
 {
@@ -259,12 +258,10 @@ namespace Viscoplastic
     void
     refuse_rate(const double r, const Point<3> &x, const double t)
     {
-      std::ostringstream message;
-      message << "The relaxation rate is " << r << " at x = (" << x
-              << "), t = " << t
-              << "; relaxation_rate() of a law must be zero or positive, since "
-                 "it limits the time step.";
-      refuse(message.str());
+      refuse("The relaxation rate is " + as_text(r) + " at x = (" + as_text(x) +
+             "), t = " + as_text(t) +
+             "; relaxation_rate() of a law must be zero or positive, since it "
+             "limits the time step.");
     }
 
 
@@ -272,12 +269,10 @@ namespace Viscoplastic
     void
     refuse_history(const Point<3> &x, const double t)
     {
-      std::ostringstream message;
-      message << "The rate of a history variable at x = (" << x
-              << "), t = " << t
-              << " is not finite; look for what history_rate() of the law "
-                 "divides by.";
-      refuse(message.str());
+      refuse(
+        "The rate of a history variable at x = (" + as_text(x) +
+        "), t = " + as_text(t) +
+        " is not finite; look for what history_rate() of the law divides by.");
     }
   } // namespace
 

@@ -7,7 +7,6 @@
 #include <viscoplastic_contact/discretization/springs.h>
 #include <viscoplastic_contact/discretization/thermal_strain.h>
 
-#include <sstream>
 
 namespace Viscoplastic
 {
@@ -245,12 +244,10 @@ namespace Viscoplastic
     const double size          = std::max(u.linfty_norm(), 1e-300);
     if (!equilibrate && contradiction > 1e-8 * size)
       {
-        std::ostringstream message;
-        message << "The initial displacement contradicts the displacements "
-                   "prescribed at t = 0 by "
-                << contradiction
-                << "; let them agree, or set 'Initial state/Equilibrate'.";
-        refuse(message.str());
+        refuse("The initial displacement contradicts the displacements "
+               "prescribed at t = 0 by " +
+               as_text(contradiction) +
+               "; let them agree, or set 'Initial state/Equilibrate'.");
       }
 
     State<dim> state;

@@ -2,7 +2,6 @@
 #include <viscoplastic_contact/base/messages.h>
 #include <viscoplastic_contact/discretization/thermal_strain.h>
 
-#include <sstream>
 
 namespace Viscoplastic
 {
@@ -41,12 +40,10 @@ namespace Viscoplastic
     {
       if (T > 0.)
         return;
-      std::ostringstream message;
-      message << "'Temperature/Value' is " << T << " at x = (" << x
-              << "), t = " << t << ", but '" << material.section
-              << "/Activation energy' asks for absolute temperatures, in "
-                 "kelvin: add 273.15 to degrees Celsius.";
-      refuse(message.str());
+      refuse("'Temperature/Value' is " + as_text(T) + " at x = (" + as_text(x) +
+             "), t = " + as_text(t) + ", but '" + material.section +
+             "/Activation energy' asks for absolute temperatures, in kelvin: "
+             "add 273.15 to degrees Celsius.");
     }
   } // namespace
 

@@ -149,13 +149,11 @@ namespace Viscoplastic
                   const TimeStep    step = scene.schedule.step(n);
                   const std::string text = violation(
                     condition, solution, x, step.t_old, step.k, scales);
-                  std::ostringstream message;
-                  message << "The exact solution contradicts 'Boundary "
-                          << condition.id << "' at x = (" << x
-                          << "), t = " << step.t_old << ": the boundary "
-                          << text << '.';
                   if (!text.empty())
-                    refuse(message.str());
+                    refuse("The exact solution contradicts 'Boundary " +
+                           as_text(condition.id) + "' at x = (" + as_text(x) +
+                           "), t = " + as_text(step.t_old) + ": the boundary " +
+                           text + '.');
                 }
           }
       }

@@ -6,7 +6,6 @@
 #include <viscoplastic_contact/error/space_estimator.h>
 
 #include <limits>
-#include <sstream>
 
 namespace Viscoplastic
 {
@@ -83,13 +82,11 @@ namespace Viscoplastic
     const FieldSamples<dim> reference =
       read_samples<dim>(samples_file(reference_directory, phase),
                         discretization.space.communicator);
-    std::ostringstream message;
-    message << "'Exact solution/Reference directory': phase " << phase
-            << " of the reference ends at t = " << reference.t
-            << ", that of this run at t = " << state.t
-            << "; 'Time/Phases' must have the same end times.";
     if (!(std::abs(reference.t - state.t) <= 1e-10 * std::abs(state.t)))
-      refuse(message.str());
+      refuse("'Exact solution/Reference directory': phase " + as_text(phase) +
+             " of the reference ends at t = " + as_text(reference.t) +
+             ", that of this run at t = " + as_text(state.t) +
+             "; 'Time/Phases' must have the same end times.");
     const double unknown = result.memory;
     result =
       differences(reference, discretization.stress_space, state, density);

@@ -115,7 +115,7 @@ namespace Viscoplastic
     , parameters(std::move(parameters_))
   {
     AssertIndexRange(parameters.size(), LawPoint().parameters.size() + 1);
-    if (!(n_history_variables <= no_history.n_independent_components))
+    if (n_history_variables > no_history.n_independent_components)
       refuse("A law has " + std::to_string(n_history_variables) +
              " history variables; six are the most.");
   }

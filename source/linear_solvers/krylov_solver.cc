@@ -9,7 +9,6 @@
 #include <cmath>
 #include <limits>
 #include <optional>
-#include <sstream>
 #include <utility>
 
 namespace Viscoplastic
@@ -452,10 +451,8 @@ namespace Viscoplastic
         solve.search_terms(face_part);
         solve.take_step(1.);
       }
-    std::ostringstream message;
-    message << "The linear solver stagnates above the relative error "
-            << tolerance << ".";
-    refuse(message.str());
+    refuse("The linear solver stagnates above the relative error " +
+           as_text(tolerance) + ".");
     return {};
   }
 } // namespace Viscoplastic

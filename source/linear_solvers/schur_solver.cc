@@ -39,7 +39,7 @@ namespace Viscoplastic
       if (common.status == CHOLMOD_NOT_POSDEF)
         refuse("The elastic matrix is not positive definite in the direct "
                "solver; the elastic data or the mesh are degenerate.");
-      if (!(common.status >= CHOLMOD_OK))
+      if (common.status < CHOLMOD_OK)
         refuse(
           "The direct solver failed " + doing +
           (common.status == CHOLMOD_OUT_OF_MEMORY ? ": memory is short" : "") +

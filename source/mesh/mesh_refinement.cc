@@ -42,7 +42,7 @@ namespace Viscoplastic
           if (ids.count(id) != 1)
             refuse(entry + " names the boundary id " + std::to_string(id) +
                    ", but the mesh has the ids " + list(ids) + ".");
-          if (!(result.emplace(id, std::stoul(match[2])).second))
+          if (!result.emplace(id, std::stoul(match[2])).second)
             refuse(entry + " names the boundary id " + std::to_string(id) +
                    " twice.");
         }
@@ -97,7 +97,7 @@ namespace Viscoplastic
     for (const auto &pair : times)
       local = std::max(local, pair.second);
     const unsigned int n_levels = 18;
-    if (!(global <= n_levels) || !(global + local <= n_levels))
+    if (global > n_levels || global + local > n_levels)
       refuse("'Geometry/Global refinements' = " + std::to_string(global) +
              " with " + std::to_string(local) +
              " further ones at boundaries; together, " +

@@ -78,10 +78,10 @@ namespace Viscoplastic
     std::ostringstream message;
     message << cause << " would make about " << n_cells << " cells and "
             << n_unknowns << " unknowns, ";
-    if (!(n_unknowns <= most))
+    if (n_unknowns > most)
       refuse(message.str() + "more than can be numbered (" +
              std::to_string(std::numeric_limits<int>::max()) + ").");
-    if (!(n_entries / n_ranks <= most))
+    if (n_entries / n_ranks > most)
       refuse(
         message.str() + "which is too much for " +
         (n_ranks == 1 ? "one MPI rank" :

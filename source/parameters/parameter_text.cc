@@ -104,7 +104,7 @@ namespace Viscoplastic
                       open_files.end() - 1,
                       open_files.back()) != open_files.end() - 1)
           refuse(caller + " '" + file + "' includes itself.");
-        if (!(++n_files <= max_files))
+        if (++n_files > max_files)
           refuse(caller + " '" + file + "' is one of more than " +
                  std::to_string(max_files) + ".");
         read(input, file, 1);

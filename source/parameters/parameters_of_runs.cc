@@ -264,7 +264,7 @@ namespace Viscoplastic
   void
   RefinementParameters::check() const
   {
-    if (!(minimal_level <= maximal_level))
+    if (minimal_level > maximal_level)
       refuse(
         "'Mesh refinement/Minimal level' = " + std::to_string(minimal_level) +
         " must not exceed 'Maximal level' = " + std::to_string(maximal_level) +

@@ -43,7 +43,7 @@ namespace Viscoplastic
         ++result.n_rows;
       else
         break;
-    if (!(result.n_rows > 0))
+    if (result.n_rows == 0)
       refuse("The rows up to step " + std::to_string(last_step) +
              ", with which the run would go on, are not in '" + name + "'.");
     return result;

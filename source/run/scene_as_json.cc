@@ -77,27 +77,18 @@ namespace Viscoplastic
 
 
 
-    Json
-    elastic_moduli(const Stiffness &stiffness)
-    {
-      const double mu = stiffness.shear_modulus(),
-                   nu = stiffness.poissons_ratio();
-      return {2. * (1. + nu) * mu, nu};
-    }
-
-
-
     /// Return Young's modulus and Poisson's ratio of the isotropic stiffness
-    /// nearest to that of a material.
+    /// nearest to that of a material, those of its Voigt averages.
+    template <int dim>
     Json
     isotropic_moduli(const Parameters         &scene,
                      const std::string        &section,
                      const MaterialParameters &material)
     {
-      return elastic_moduli(nearest_isotropic(
-        scene.dimension == 2 ?
-          Material<2>(section, material, scene.handler).stiffness(Point<2>()) :
-          Material<3>(section, material, scene.handler).stiffness(Point<3>())));
+      const Stiffness stiffness =
+        Material<dim>(section, material, scene.handler).stiffness(Point<dim>());
+      const double nu = stiffness.poissons_ratio();
+      return {2. * (1. + nu) * stiffness.shear_modulus(), nu};
     }
 
 
@@ -151,7 +142,9 @@ namespace Viscoplastic
         };
         if (!material.voigt_matrix.empty())
           json["nearest_isotropic"][section] =
-            isotropic_moduli(scene, section, material);
+            scene.dimension == 2 ?
+              isotropic_moduli<2>(scene, section, material) :
+              isotropic_moduli<3>(scene, section, material);
         const std::string of_law = section + '/' + material.law + '/';
         for (const auto &entry : values)
           if (const std::string &path = entry.first;
@@ -192,17 +185,6 @@ namespace Viscoplastic
       Json                                    &json;
     };
   } // namespace
-
-
-
-  Stiffness
-  nearest_isotropic(const Stiffness &stiffness)
-  {
-    // The Voigt averages are the coefficients of the projection.
-    const double mu = stiffness.shear_modulus(),
-                 nu = stiffness.poissons_ratio();
-    return Stiffness::isotropic(2. * (1. + nu) * mu, nu);
-  }
 
 
 

@@ -4,6 +4,7 @@
 #include <deal.II/fe/fe_nothing.h>
 #include <deal.II/fe/fe_values.h>
 
+#include <viscoplastic_contact/base/messages.h>
 #include <viscoplastic_contact/discretization/discretization.h>
 #include <viscoplastic_contact/mesh/mesh.h>
 #include <viscoplastic_contact/mesh/plane_model.h>
@@ -11,15 +12,22 @@
 #include <viscoplastic_contact/run/scene_data.h>
 #include <viscoplastic_contact/scene/scene.h>
 
-#include <iomanip>
 #include <numeric>
 #include <regex>
-#include <sstream>
 
 namespace Viscoplastic
 {
   namespace
   {
+    /// Return a number as text with all of its digits.
+    std::string
+    exact(const double value)
+    {
+      return number(value, 17);
+    }
+
+
+
     /// Apply a function to the components of a text; return nothing if the
     /// function returns nothing for all components.
     std::optional<std::string>
@@ -275,16 +283,6 @@ namespace Viscoplastic
     if (scene.dimension == 2)
       return std::make_unique<SceneOnMesh<2>>(scene, communicator);
     return std::make_unique<SceneOnMesh<3>>(scene, communicator);
-  }
-
-
-
-  std::string
-  exact(const double value)
-  {
-    std::ostringstream text;
-    text << std::setprecision(17) << value;
-    return text.str();
   }
 
 

@@ -56,7 +56,7 @@ namespace Viscoplastic
         return;
       const auto found =
         locate_on_boundary(triangulation, points, scene.contact_boundaries());
-      if (!(std::count(found.distances.begin(), found.distances.end(), 0.) > 0))
+      if (std::count(found.distances.begin(), found.distances.end(), 0.) == 0)
         refuse("'" + entry + "': `" + name_of(*field) +
                "' is a field of boundaries with the role contact, and " +
                places + ".");

@@ -170,7 +170,7 @@ namespace Viscoplastic
               std::max(report.relative_error, change / sum);
             return report;
           }
-        if (!(report.bound_iterations < parameters.maximal_iterations))
+        if (report.bound_iterations >= parameters.maximal_iterations)
           refuse(no_fixed_point(report.bound_iterations,
                                 change / sum,
                                 change / last_change));

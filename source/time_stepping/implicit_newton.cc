@@ -10,7 +10,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <sstream>
 
 // Newton's method of a step of backward Euler.
 
@@ -317,14 +316,11 @@ namespace Viscoplastic
   void
   ImplicitStep<dim>::Newton::give_up() const
   {
-    std::ostringstream message;
-    message << "Newton's method for backward Euler did not converge in "
-            << solution.newton_iterations
-            << " iterations: the relative error is " << best_error
-            << " at best, and the tolerance is " << tolerance
-            << " ('Solver/Contact tolerance'); take more steps in "
-               "'Time/Phases'.";
-    refuse(message.str());
+    refuse("Newton's method for backward Euler did not converge in " +
+           as_text(solution.newton_iterations) +
+           " iterations: the relative error is " + as_text(best_error) +
+           " at best, and the tolerance is " + as_text(tolerance) +
+           " ('Solver/Contact tolerance'); take more steps in 'Time/Phases'.");
   }
 
 

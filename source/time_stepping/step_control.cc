@@ -88,11 +88,9 @@ namespace Viscoplastic
             {
               time = -1.; // refused below
             }
-          std::ostringstream message;
-          message << "'Step control/Landing times': '" << excerpt(entry)
-                  << "' is not a time between 0 and " << end_time << ".";
           if (!(time > 0.) || !(time <= end_time))
-            refuse(message.str());
+            refuse("'Step control/Landing times': '" + excerpt(entry) +
+                   "' is not a time between 0 and " + as_text(end_time) + ".");
           times.push_back(time);
         }
       std::sort(times.begin(), times.end());
@@ -143,13 +141,12 @@ namespace Viscoplastic
       refuse("'Step control/Landing times' are given, but the steps are those "
              "of 'Time/Phases'; give 'Step control/Tolerance' or 'Error "
              "control/Tolerance', or put the times into the phases.");
-    std::ostringstream message;
-    message << "'Step control/Smallest step' = " << parameters.smallest_step
-            << " is larger than 'Step control/Largest step' = "
-            << parameters.largest_step << ".";
     if (parameters.largest_step != 0. &&
         !(parameters.smallest_step <= parameters.largest_step))
-      refuse(message.str());
+      refuse(
+        "'Step control/Smallest step' = " + as_text(parameters.smallest_step) +
+        " is larger than 'Step control/Largest step' = " +
+        as_text(parameters.largest_step) + ".");
   }
 
 
@@ -243,13 +240,11 @@ namespace Viscoplastic
       k = std::min(schedule.phase_at(t).step_size(), largest(t));
     if (needs_limit())
       {
-        std::ostringstream message;
-        message << "The stability limit 2/r = " << limit << " at t = " << t
-                << " would take " << distance / limit
-                << " steps until t = " << target
-                << "; set 'Time/Scheme' = backward Euler.";
         if (!(distance <= most_divisions * limit))
-          refuse(message.str());
+          refuse("The stability limit 2/r = " + as_text(limit) + " at t = " +
+                 as_text(t) + " would take " + as_text(distance / limit) +
+                 " steps until t = " + as_text(target) +
+                 "; set 'Time/Scheme' = backward Euler.");
         k = std::min(k, limit);
       }
     // Take equal steps up to the target where few are left, to avoid a tiny
@@ -259,12 +254,10 @@ namespace Viscoplastic
       return {n + 1, t, target, distance};
     if (!is_on || divisions <= 2.)
       k = distance / divisions;
-    const double       end = t + k;
-    std::ostringstream message;
-    message << "The time step " << k << " is too small to change the time " << t
-            << ".";
+    const double end = t + k;
     if (!(end > t))
-      refuse(message.str());
+      refuse("The time step " + as_text(k) +
+             " is too small to change the time " + as_text(t) + ".");
     return {n + 1, t, end, end - t};
   }
 

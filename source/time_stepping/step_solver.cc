@@ -5,7 +5,6 @@
 #include <viscoplastic_contact/discretization/bulk_system.h>
 #include <viscoplastic_contact/time_stepping/step_solver.h>
 
-#include <sstream>
 
 namespace Viscoplastic
 {
@@ -192,13 +191,11 @@ namespace Viscoplastic
       return;
     const double left =
       bulk_solver->begin(data.right_side, u)->rounding_of_residual();
-    std::ostringstream message;
-    message
-      << "Rounding alone makes " << left / size
-      << " or more of the solution. Cells that are less flat, stiffness "
-         "that differs less or Poisson's ratio farther from 1/2 mend that.";
     if (!(left <= largest_rounding * size))
-      refuse(message.str());
+      refuse(
+        "Rounding alone makes " + as_text(left / size) +
+        " or more of the solution. Cells that are less flat, stiffness that "
+        "differs less or Poisson's ratio farther from 1/2 mend that.");
     if (!(left > std::max(report.error, report.tolerance * size)))
       return;
     report.error          = left;

@@ -4,6 +4,7 @@
 
 #include "folder.h"
 #include <viscoplastic_contact/base/expression.h>
+#include <viscoplastic_contact/laws/stiffness.h>
 #include <viscoplastic_contact/run/scene_as_json.h>
 #include <viscoplastic_contact/run/scene_data.h>
 
@@ -214,6 +215,11 @@ namespace
     for (unsigned int i = 0; i < 6; ++i)
       for (unsigned int j = 0; j < 6; ++j)
         voigt(i, j) = (i == j ? 4. + i : 0.) + 0.1 * (i + j);
+    const auto nearest_isotropic = [](const Stiffness &stiffness) {
+      const double nu = stiffness.poissons_ratio();
+      return Stiffness::isotropic(2. * (1. + nu) * stiffness.shear_modulus(),
+                                  nu);
+    };
     const Stiffness general          = Stiffness::anisotropic(voigt),
                     nearest          = nearest_isotropic(general);
     const SymmetricTensor<4, 3> rest = general.tensor() - nearest.tensor();

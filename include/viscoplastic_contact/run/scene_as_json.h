@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
-#include <viscoplastic_contact/laws/stiffness.h>
 #include <viscoplastic_contact/parameters/parameter_file.h>
 
 #include <mpi.h>
@@ -28,16 +27,12 @@ namespace Viscoplastic
   ///                         that are not their own means
   ///   areas                 of contact boundaries, by id
   ///   nearest_isotropic     Young's modulus and Poisson's ratio, by section of
-  ///                         anisotropic materials
+  ///                         anisotropic materials, of the isotropic tensor
+  ///                         nearest in the Frobenius norm
   ///
   /// Collective. Throws ExcMessage.
   std::string
   scene_as_json(const Parameters &scene,
                 const bool        with_means,
                 const MPI_Comm    communicator);
-
-  /// Return the isotropic tensor nearest to a stiffness in the Frobenius norm
-  /// of fourth-order tensors, which does not depend on the axes.
-  Stiffness
-  nearest_isotropic(const Stiffness &stiffness);
 } // namespace Viscoplastic

@@ -53,11 +53,6 @@ namespace Viscoplastic
   };
 
 
-  /// Return a number as text with all of its digits.
-  std::string
-  exact(const double value);
-
-
   /// Return the function of t that interpolates these values linearly as an
   /// expression; constant before the first time and linear after the last.
   /// Points on a line between others are left out.

@@ -88,12 +88,13 @@ namespace Viscoplastic
     void
     remark_on_changes(Console &console) const;
 
+    /// Parameters that have changed since the checkpoint was written.
+    const ParameterChanges changes;
     /// The times of the fields written, and the seconds that the run had taken.
     std::vector<double> output_times;
     double              earlier_seconds = 0.;
 
   private:
-    const ParameterChanges changes;
     /// Whether the state solves the step that it ends.
     bool                      is_solution = false;
     const CheckpointStore    &store;

@@ -93,11 +93,14 @@ namespace Viscoplastic
                    0.5 * std::floor(2. * std::log2(std::min(time, longest))));
     const auto now = discretization.laws.at(state.t, state.history);
     // The remainder contains the difference to tangents at the present state.
+    // Where flow has ended, what has crept is not k |G|, and the tangents of
+    // the last flow serve on: those of the elastic body do not know it.
     const auto has_changed = [&] {
       const auto [difference, size] =
         change(stress_space, linearized->rate_slope, rate.rate);
+      const double duration = creep.time > time ? creep.time : k;
       return k * difference >
-             largest_change * (creep.stress / creep.exponent + k * size);
+             largest_change * (creep.stress / creep.exponent + duration * size);
     };
     bool is_new = false;
     if (!linearized || k != linearized->k ||

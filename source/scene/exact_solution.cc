@@ -43,8 +43,7 @@ namespace Viscoplastic
     given_displacement.emplace(parameters.displacement,
                                dim + (is_generalized() ? 1 : 0),
                                "Exact solution/Displacement");
-    if (is_generalized() &&
-        !(!(*given_displacement)[dim].depends_on_position()))
+    if (is_generalized() && (*given_displacement)[dim].depends_on_position())
       refuse("The last component of 'Exact solution/Displacement', eps_zz, "
              "depends on the place, but it is one for the whole section.");
     if (!Utilities::trim(parameters.stress).empty())

@@ -19,24 +19,17 @@ namespace Viscoplastic
     {
       youngs_modulus,
       poissons_ratio,
-      relaxation_time
+      relaxation_time,
+      shear_modulus, // of E_inf, added by prepare()
+      bulk_modulus
     };
 
-    /// Return E_inf; Young's modulus must not be zero.
+    /// Return E_inf, which may be zero.
     Stiffness
     long_term(const LawPoint &point)
     {
-      return Stiffness::isotropic(point.parameters[youngs_modulus],
-                                  point.parameters[poissons_ratio]);
-    }
-
-    /// Return E_inf eps.
-    SymmetricTensor<2, 3>
-    long_term_stress(const SymmetricTensor<2, 3> &strain, const LawPoint &point)
-    {
-      if (point.parameters[youngs_modulus] == 0)
-        return {};
-      return long_term(point).stress(strain);
+      return Stiffness(point.parameters[shear_modulus],
+                       point.parameters[bulk_modulus]);
     }
 
 
@@ -51,22 +44,15 @@ namespace Viscoplastic
         : tolerance(1e-10 * (2 * E.shear_modulus() + 3 * E.bulk_modulus()))
         , isotropic(E.is_isotropic())
       {
-        const bool all_relaxes = point.parameters[youngs_modulus] == 0;
+        const Stiffness E_inf = long_term(point);
         if (isotropic)
           {
-            mu   = E.shear_modulus();
-            bulk = E.bulk_modulus();
-            if (!all_relaxes)
-              {
-                mu -= long_term(point).shear_modulus();
-                bulk -= long_term(point).bulk_modulus();
-              }
+            mu   = E.shear_modulus() - E_inf.shear_modulus();
+            bulk = E.bulk_modulus() - E_inf.bulk_modulus();
           }
         else
           {
-            SymmetricTensor<4, 3> B = E.tensor();
-            if (!all_relaxes)
-              B -= long_term(point).tensor();
+            const SymmetricTensor<4, 3> B = E.tensor() - E_inf.tensor();
             // Eigenvectors take twenty times longer than a factorization.
             if (!factorize(B))
               modes = spectrum(B);
@@ -257,7 +243,7 @@ namespace Viscoplastic
            const Stiffness & /*stiffness*/,
            const LawPoint &point) const override
       {
-        return (stress - long_term_stress(strain, point)) /
+        return (stress - long_term(point).stress(strain)) /
                -point.parameters[relaxation_time];
       }
 
@@ -267,13 +253,9 @@ namespace Viscoplastic
                const Stiffness & /*stiffness*/,
                const LawPoint &point) const override
       {
-        Tangents tangents;
-        tangents.stress =
-          identity_tensor<3>() / -point.parameters[relaxation_time];
-        if (point.parameters[youngs_modulus] > 0)
-          tangents.strain =
-            long_term(point).tensor() / point.parameters[relaxation_time];
-        return tangents;
+        const double theta = point.parameters[relaxation_time];
+        return {identity_tensor<3>() / -theta,
+                long_term(point).tensor() / theta};
       }
 
       bool
@@ -313,7 +295,7 @@ namespace Viscoplastic
       {
         const SecondSpring          spring(stiffness, point);
         const SymmetricTensor<2, 3> q =
-          stress - long_term_stress(strain, point);
+          stress - long_term(point).stress(strain);
         SymmetricTensor<2, 3> result = spring.strain(q);
         if (!spring.relaxes_in_all_modes())
           result += spring.without_spring(
@@ -334,7 +316,7 @@ namespace Viscoplastic
                     const LawPoint              &point) const override
       {
         const SecondSpring          spring(stiffness, point);
-        const SymmetricTensor<2, 3> elastic = long_term_stress(strain, point);
+        const SymmetricTensor<2, 3> elastic = long_term(point).stress(strain);
         const SymmetricTensor<2, 3> q       = stress - elastic;
         double energy = 0.5 * (elastic * strain + q * spring.strain(q));
         if (!spring.relaxes_in_all_modes())
@@ -343,6 +325,19 @@ namespace Viscoplastic
             energy += q_N * (strain + 0.5 * stiffness.strain(q_N));
           }
         return energy;
+      }
+
+    private:
+      void
+      prepare(LawPoint &point) const override
+      {
+        const double modulus = point.parameters[youngs_modulus];
+        if (modulus == 0.)
+          return;
+        const Stiffness E_inf =
+          Stiffness::isotropic(modulus, point.parameters[poissons_ratio]);
+        point.parameters[shear_modulus] = E_inf.shear_modulus();
+        point.parameters[bulk_modulus]  = E_inf.bulk_modulus();
       }
     };
   } // namespace

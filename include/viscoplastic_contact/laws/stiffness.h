@@ -39,7 +39,10 @@ namespace Viscoplastic
   class Stiffness
   {
   public:
-    /// E eps = 2 mu dev eps + K tr(eps) I. Young's modulus (unit of stress)
+    /// E eps = 2 mu dev eps + K tr(eps) I.
+    Stiffness(const double shear_modulus, const double bulk_modulus);
+
+    /// The same by other moduli. Young's modulus (unit of stress)
     /// must be positive and finite, Poisson's ratio inside (-1, 1/2): this is
     /// what makes E elliptic. Throws the exceptions below otherwise.
     static Stiffness
@@ -127,8 +130,6 @@ namespace Viscoplastic
       SymmetricTensor<4, 3> stiffness, compliance;
       double                largest_deviatoric, smallest_deviatoric;
     };
-
-    Stiffness(const double shear_modulus, const double bulk_modulus);
 
     // Not inline, so that the isotropic case is short enough for inlining.
     SymmetricTensor<2, 3>

@@ -94,9 +94,7 @@ namespace Viscoplastic
                 (s - c.modulus * *point.history) -
               damping * c.kelvin * c.modulus_slope * *point.history,
             std::sqrt(1.5) / size * s);
-        Tangents result;
-        result.stress = -1. * stiffness.tensor() * slope;
-        return result;
+        return {stiffness.stress(-1. * slope), {}};
       }
 
       bool

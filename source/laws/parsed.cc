@@ -91,8 +91,8 @@ namespace Viscoplastic
               }
           }
 
-        const SymmetricTensor<4, 3> minus_E = -1. * stiffness.tensor();
-        return {minus_E * by_stress, minus_E * by_strain};
+        return {stiffness.stress(-1. * by_stress),
+                stiffness.stress(-1. * by_strain)};
       }
 
       double

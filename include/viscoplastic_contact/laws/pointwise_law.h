@@ -86,10 +86,9 @@ namespace Viscoplastic
              const LawPoint  &point) const final
     {
       const FlowSlopes slope = law().slopes(von_mises(stress), point);
-      Tangents         tangents;
-      tangents.stress = -1. * stiffness.tensor() *
-                        flow_tangent(stress, slope.secant, slope.tangent);
-      return tangents;
+      return {stiffness.stress(
+                flow_tangent(stress, -slope.secant, -slope.tangent)),
+              {}};
     }
 
     std::optional<FlowSlopes>

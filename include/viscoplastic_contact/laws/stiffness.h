@@ -63,6 +63,10 @@ namespace Viscoplastic
     SymmetricTensor<2, 3>
     stress(const SymmetricTensor<2, 3> &strain) const;
 
+    /// E T, the derivatives of the stress of strains with the derivatives T.
+    SymmetricTensor<4, 3>
+    stress(const SymmetricTensor<4, 3> &strain) const;
+
     /// E^-1 stress.
     SymmetricTensor<2, 3>
     strain(const SymmetricTensor<2, 3> &stress) const;
@@ -295,18 +299,5 @@ namespace Viscoplastic
   Stiffness::poissons_ratio() const
   {
     return (3 * bulk - 2 * mu) / (6 * bulk + 2 * mu);
-  }
-
-
-
-  inline SymmetricTensor<4, 3>
-  Stiffness::tensor() const
-  {
-    if (anisotropic_data)
-      return anisotropic_data->stiffness;
-
-    const SymmetricTensor<2, 3> identity = unit_symmetric_tensor<3>();
-    return 2 * mu * deviator_tensor<3>() +
-           bulk * outer_product(identity, identity);
   }
 } // namespace Viscoplastic

@@ -88,7 +88,11 @@ class Server:
 
     def __init__(self, executable, limits):
         self.server = program_server.Server(
-            [executable], limits.cpu, limits.clock, limits.memory or 0, environment()
+            [executable],
+            limits.cpu,
+            limits.clock,
+            limits.memory or 0,
+            {**environment(), "LD_BIND_NOW": "1"},  # or each fork looks up what it calls
         )
         self.close = self.server.close
 

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Run hard cases: python3 run.py [--full] [--list] [--page FILE] [CASE ...].
+"""Run hard cases: python3 run.py [--full] [--list] [--page FILE] [NAME ...].
 
-Without names all of them.  Ends with `N passed, N failed`, and with code 1
-unless all have passed.
+Names are of cases or of files of them; without names all are run.  Ends with
+`N passed, N failed`, and with code 1 unless all have passed.
 """
 
 import argparse
@@ -38,7 +38,7 @@ def load():
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("names", nargs="*", metavar="CASE")
+    parser.add_argument("names", nargs="*", metavar="NAME")
     parser.add_argument("--full", action="store_true", help="the full sizes")
     parser.add_argument("--list", action="store_true", help="names, and nothing else")
     parser.add_argument("--page", metavar="FILE.md", help="write a page, and FILE.csv")
@@ -47,16 +47,18 @@ def main():
     if arguments.list:
         print("\n".join(CASES))
         return 0
-    unknown = [name for name in arguments.names if name not in CASES]
+    unknown = [name for name in arguments.names if name not in (*CASES, *MODULES)]
     if unknown:
         parser.error(f"there is no case {', '.join(unknown)}; --list names all")
+    chosen = {*arguments.names} or CASES
+    cases = [c for c in CASES.values() if {c.name, c.function.__module__} & {*chosen}]
 
     size = Size(arguments.full)
     outcomes = []
-    for name in arguments.names or CASES:
-        outcome = run_case(CASES[name], size)
+    for case in cases:
+        outcome = run_case(case, size)
         outcomes.append(outcome)
-        print(f"{name}: {'passed' if outcome.passed else 'FAILED'}", end="")
+        print(f"{case.name}: {'passed' if outcome.passed else 'FAILED'}", end="")
         print(f" in {outcome.seconds:.1f} s  {outcome.failure}", flush=True)
         for figure in outcome.figures:
             mark = "" if figure.holds else "  BROKEN"

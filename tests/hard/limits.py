@@ -74,8 +74,8 @@ def one_step(report, dim, n, solver, most=None):
     "largest meshes that fit 16 GiB",
 )
 def memory(size, report):
-    one_step(report, 2, size(180, 512), "direct")
-    one_step(report, 2, size(180, 512), "multigrid")
+    one_step(report, 2, size(140, 512), "direct")
+    one_step(report, 2, size(140, 512), "multigrid")
     one_step(report, 3, size(16, 32), "direct")
     one_step(report, 3, size(16, 32), "multigrid")
     if size.full:

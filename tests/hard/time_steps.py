@@ -316,7 +316,7 @@ def runs_of(scene):
 )
 def many_steps(size, report):
     defects = []
-    for n_periods, steps in (250, 20), (size(250, 2500), 40):
+    for n_periods, steps in (size(150, 250), 20), (size(150, 2500), 40):
         with Memory("many_steps_2d") as memory:
             result = scene(
                 "many_steps_2d", **{"Time/Phases": f"{n_periods}: {n_periods * steps}"}

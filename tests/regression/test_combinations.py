@@ -16,7 +16,7 @@ from laws import HARDENING, NORTON, PERZYNA, pressure
 from runs import EVERY_STEP, Job
 from test_restart import RestartCase
 
-N_COMBINATIONS = int(os.environ.get("COMBINATIONS", 8))
+N_COMBINATIONS = int(os.environ.get("COMBINATIONS", 6))
 
 SCENES = {
     "slab": {

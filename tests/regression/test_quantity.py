@@ -640,9 +640,11 @@ class Kept(TestCase):
             "Solver/Linear solver": "multigrid",
             "Solver/Contact tolerance": 1e-10,
         }
-        for column, tolerance in ("reaction_3_x", 0.01), ("friction_dissipation", 0.02):
+        for column, tolerance, ranks in (
+            ("reaction_3_x", 0.01, 3), ("friction_dissipation", 0.02, 2)
+        ):
             one = run("slab", of(column, tolerance, **scene))
-            several = run("slab", of(column, tolerance, **scene), ranks=3)
+            several = run("slab", of(column, tolerance, **scene), ranks)
             self.assertGreater(one["cells"][-1], 2 * 32)
             self.assertEqual(list(several["cells"]), list(one["cells"]))
             # Steps are chosen by the dual problem, which is solved to 1e-6,
@@ -664,7 +666,7 @@ class Kept(TestCase):
         for column, tolerance, more in (
             ("reaction_3_x", 0.005, {}),
             ("friction_dissipation", 0.005, {}),
-            ("friction_dissipation", 0.03, pressed),
+            ("friction_dissipation", 0.06, pressed),
         ):
             scene = {**COARSE_SLAB, **EVERY_STEP, **more, **of(column, tolerance)}
             with Job("slab", scene) as job:
@@ -755,7 +757,7 @@ class KeptTangents(TestCase):
 
     def test_estimate(self):
         kept = {}
-        for ranks in (1, 3):
+        for ranks in (1, 2):
             overrides = {
                 **self.SCENE,
                 "Checkpoint/Every n steps": 1,
@@ -784,7 +786,7 @@ class KeptTangents(TestCase):
                         "--restart", overrides={"Material/norton/Rate factor": "2/2"}
                     )
                     anew = result["quantity_space"][15:]
-        self.assertClose(kept[3][1:], kept[1][1:], 1e-5)
+        self.assertClose(kept[2][1:], kept[1][1:], 1e-5)
         difference = np.abs(kept[1][15:] / anew - 1).max()
         self.assertLess(difference, 1e-6)  # measured: 6e-8
         self.assertGreater(difference, 1e-10)
@@ -884,9 +886,9 @@ class PointInCreep(TestCase):
         # measured: 0.82 and 0.69, the bar 1.6 and 1.4 of the error (norton on a mesh twice
         # as wide: 0.56 and 1.1); with linear strains extrapolated everywhere -0.06, with
         # the other sign of what the power law takes beyond its tangents 1.6
-        maxwell = {"Time/Phases": "1.3: 3, 13: 3, 130: 3, 1300: 3"}
+        maxwell = {"Time/Phases": "1.3: 2, 13: 2, 130: 2, 1300: 2"}
         norton = {
-            "Time/Phases": "1: 3, 10: 3, 100: 3, 1000: 3",
+            "Time/Phases": "1: 2, 10: 2, 100: 2, 1000: 2",
             **of_law("norton", Rate_factor=1e4, Exponent=3, Stress_cap=0.1),
         }
         for law in maxwell, norton:

@@ -18,8 +18,10 @@ from harness import SOURCE, TestCase, main, run, scene_file
 from runs import Job, on_boundary
 from rank_comparison import compare
 
-# Three have a neighbor on either side, four meet at a point.
-RANKS = 1, 3, 4
+# Three have a neighbor on either side, four meet at a point. Where a scene has nothing
+# beyond others but what acts at a point, two suffice: on two cores they take a third of
+# the time of three.
+TWO, THREE, FOUR, RANKS = (1, 2), (1, 3), (1, 4), (1, 3, 4)
 AGREE = 1e-7  # of the largest value of a column
 AGREE_IN_FIELDS = 1e-6  # of the largest value of a field
 
@@ -46,6 +48,7 @@ class Scene:
     """How to shorten a scene, and what is known of it."""
 
     changes: dict = dataclasses.field(default_factory=dict)
+    ranks: tuple = TWO
     law: str = ""  # the file is a material to go after the scene tresca_2d
     ties: bool = False  # the whole face reaches its bound at once
 
@@ -55,29 +58,33 @@ SCENES = {
     "plane": {
         # more than the 2000 unknowns that multigrid leaves to its coarsest level
         "verification/slab": Scene(
-            {**cells(48, 24, to="2, 1"), **phases("1: 3, 2: 3")}
+            {**cells(48, 24, to="2, 1"), **phases("1: 3, 2: 3")},
+            ranks=THREE,
         ),
-        "verification/conveyor_2d": Scene(phases("1: 3, 2: 3")),
+        "verification/conveyor_2d": Scene(phases("1: 3, 2: 3"), ranks=THREE),
         "verification/coulomb_block_2d": Scene(phases("1: 1, 2: 2, 4: 4")),
         "verification/half_clamped_block": Scene(refined(1)),
         "verification/junction_2d": Scene(refined(1)),
         "verification/kinked_load_2d": Scene(refined(1)),
-        "verification/passenger_2d": Scene(),
+        "verification/passenger_2d": Scene(ranks=THREE),
         "verification/elastic_frictionless": Scene(),
         "verification/springs_beam_2d": Scene(refined(0)),
         "verification/springs_block_2d": Scene(refined(1)),
         # loads that do not cancel
         "verification/springs_strip_2d": Scene({"Boundary 3/Pressure": "t*x"}),
-        "verification/two_blocks_2d": Scene({"Boundary 23/Pressure": "0.01*t*x"}),
+        "verification/two_blocks_2d": Scene(
+            {"Boundary 23/Pressure": "0.01*t*x"}, ranks=THREE
+        ),
         "verification/shrink_fit_2d": Scene(
-            {"Boundary 21/Role": "traction", "Boundary 21/Pressure": "1e-4*t*x"}
+            {"Boundary 21/Role": "traction", "Boundary 21/Pressure": "1e-4*t*x"},
+            ranks=THREE,
         ),
     },
     "corners": {
-        "verification/corner_coulomb_90_2d": Scene(),
-        "verification/corner_singularity_2d": Scene(phases("1: 4")),
+        "verification/corner_coulomb_90_2d": Scene(ranks=FOUR),
+        "verification/corner_singularity_2d": Scene(phases("1: 4"), ranks=FOUR),
         "verification/corner_tresca_150_2d": Scene(),
-        "verification/corner_tresca_90_3d": Scene(),
+        "verification/corner_tresca_90_3d": Scene(ranks=FOUR),
         **{
             f"verification/shear_layer_{name}": Scene(phases("1: 6"), ties=True)
             for name in ("2d", "rotated_2d", "3d", "rotated_3d")
@@ -85,26 +92,31 @@ SCENES = {
     },
     "space": {
         "verification/pad": Scene({**cells(9, 9, 9, to="1, 1, 1"), **phases("1.5: 3")}),
-        "verification/conveyor_3d": Scene(phases("1.5: 8")),
+        "verification/conveyor_3d": Scene(phases("1.5: 8"), ranks=FOUR),
         "verification/coulomb_block_3d": Scene(phases("1: 1, 3: 5")),
-        "verification/coulomb_pad_3d": Scene(phases("0.5: 2, 1.5: 4")),
+        "verification/coulomb_pad_3d": Scene(phases("0.5: 2, 1.5: 4"), ranks=THREE),
         "verification/springs_block_3d": Scene(),
-        "verification/two_blocks_3d": Scene({"Boundary 25/Pressure": "0.01*t*x"}),
+        "verification/two_blocks_3d": Scene(
+            {"Boundary 25/Pressure": "0.01*t*x"}, ranks=FOUR
+        ),
     },
     "adaptive": {
-        "verification/slab_adaptive": Scene(phases("1: 6, 2: 6")),
+        "verification/slab_adaptive": Scene(phases("1: 6, 2: 6"), ranks=THREE),
         "verification/pad_adaptive": Scene(
-            {**phases("1.5: 6"), "Mesh refinement/Cell budget": 400}
+            {**phases("1.5: 6"), "Mesh refinement/Cell budget": 400},
+            ranks=FOUR,
         ),
     },
     "opening": {
-        "verification/hertz_2d": Scene(refined(3)),
+        "verification/hertz_2d": Scene(refined(3), ranks=THREE),
         "verification/hertz_disc_2d": Scene(refined(4)),
         "verification/hertz_3d": Scene(
-            {**phases("1: 2"), "Mesh refinement/Cell budget": 1200}
+            {**phases("1: 2"), "Mesh refinement/Cell budget": 1200},
+            ranks=THREE,
         ),
         "verification/hertz_ball_3d": Scene(
-            {**refined(2), "Geometry/Boundary refinements": ""}
+            {**refined(2), "Geometry/Boundary refinements": ""},
+            ranks=THREE,
         ),
         "verification/indentation_3d": Scene({**refined(0), **phases("0.1: 1, 2: 3")}),
         "verification/lifted_beam_2d": Scene(phases("1: 2")),
@@ -115,10 +127,11 @@ SCENES = {
             {**refined(2), **phases("1: 1, 3: 2"), "Solver/Coulomb tolerance": 1e-10}
         ),
         "verification/flat_punch_2d": Scene(
-            {**phases("1: 3"), "Mesh refinement/Cell budget": 400}
+            {**phases("1: 3"), "Mesh refinement/Cell budget": 400},
+            ranks=THREE,
         ),
         "verification/rubbing_2d": Scene(phases("1: 4, 1.5: 2")),
-        "verification/soft_ground_3d": Scene(phases("1: 2")),
+        "verification/soft_ground_3d": Scene(phases("1: 2"), ranks=THREE),
         # exact, so that errors are rounding
         "verification/tilted_plane_2d": Scene(
             {**refined(2), "Exact solution/Displacement": ""}
@@ -180,7 +193,7 @@ SCENES = {
         "verification/manufactured/coulomb_3d": Scene(phases("1: 3")),
         **{
             # steps below the stability limit of all of them
-            f"verification/manufactured/law_{law}": Scene(phases("0.5: 8"), law)
+            f"verification/manufactured/law_{law}": Scene(phases("0.5: 8"), law=law)
             for law in (
                 "elastic", "norton", "parsed", "perzyna", "perzyna_hardening", "zener"
             )
@@ -279,8 +292,8 @@ ELSEWHERE = {
 }
 
 
-def several(name, scene, ranks=RANKS):
-    """Runs of a scene on each of the numbers of ranks."""
+def several(name, scene):
+    """Runs of a scene on each of its numbers of ranks."""
     changes = {
         "Output/Fields every": 1,
         "Output/Fields interval": 0,
@@ -291,12 +304,13 @@ def several(name, scene, ranks=RANKS):
     if scene.law:
         base = (MANUFACTURED / "tresca_2d.prm").read_text()
         text = base.replace("set Law             = maxwell", "") + text
-    return [run(name, changes, ranks=n, text=text) for n in ranks]
+    return [run(name, changes, ranks=n, text=text) for n in scene.ranks]
 
 
 class SameOnAllRanks(TestCase):
-    def check(self, name, scene, ranks=RANKS, identities=False):
-        runs = several(name, scene, ranks)
+    def check(self, name, scene, identities=False):
+        ranks = scene.ranks
+        runs = several(name, scene)
         alone = runs[0]
         if identities:
             for one in runs:
@@ -340,35 +354,32 @@ class Scenes(SameOnAllRanks):
         self.assertEqual(files, here)
 
     def test_plane(self):
-        self.check_group("plane", ranks=(1, 3))
+        self.check_group("plane")
 
     def test_corners(self):
         # with 3: test_foundation_on_one_rank
-        self.check_group("corners", ranks=(1, 4))
+        self.check_group("corners")
 
     def test_space(self):
-        self.check_group("space", ranks=(1, 4), identities=True)
+        self.check_group("space", identities=True)
 
     def test_adaptive(self):
         self.check_group("adaptive", identities=True)
 
     def test_opening(self):
-        self.check_group("opening", ranks=(1, 3), identities=True)
-
-    # What these have beyond the others acts at a point: two numbers suffice, and on
-    # two cores two ranks take a third of the time of three.
+        self.check_group("opening", identities=True)
 
     def test_literature(self):
-        self.check_group("literature", ranks=(1, 2))
+        self.check_group("literature")
 
     def test_laws(self):
-        self.check_group("laws", ranks=(1, 2))
+        self.check_group("laws")
 
     def test_manufactured(self):
-        self.check_group("manufactured", ranks=(1, 2))
+        self.check_group("manufactured")
 
     def test_demos(self):
-        self.check_group("demos", ranks=(1, 2))
+        self.check_group("demos")
 
 
 # Two cells, and one, of the slab and the pad.
@@ -389,14 +400,14 @@ GROWING = {
 class MoreRanksThanCells(SameOnAllRanks):
     """Ranks without cells, without contact faces, and what they take part in."""
 
-    PLANE = "verification/slab", TWO_CELLS, (1, 4)
-    SPACE = "verification/pad", ONE_CELL, (1, 3)
+    PLANE = "verification/slab", TWO_CELLS, FOUR
+    SPACE = "verification/pad", ONE_CELL, THREE
 
     def check_both(self, changes):
         for name, few, ranks in self.PLANE, self.SPACE:
             with self.subTest(name):
-                scene = Scene({**few, **EVERYTHING, **changes})
-                self.check(name, scene, ranks, identities=True)
+                scene = Scene({**few, **EVERYTHING, **changes}, ranks)
+                self.check(name, scene, identities=True)
 
     def test_forward_euler(self):
         self.check_both({})
@@ -412,7 +423,7 @@ class MoreRanksThanCells(SameOnAllRanks):
 
     def test_foundation_on_one_rank(self):
         """Two faces of contact at a corner, most ranks without any."""
-        self.check("verification/corner_tresca_150_2d", Scene(refined(1)))
+        self.check("verification/corner_tresca_150_2d", Scene(refined(1), RANKS))
 
     def test_checkpoints_go_to_other_ranks(self):
         for name, few, (_, most) in self.PLANE, self.SPACE:
@@ -451,8 +462,8 @@ class MoreRanksThanCells(SameOnAllRanks):
 
     def test_pilots_of_a_price(self):
         """They begin with two cells of a scene whose solution is known."""
-        scene = Scene({**cells(2, 1, to="1, 1"), **refined(0), **phases("1: 2")})
-        self.check("verification/manufactured/tresca_2d", scene, (1, 4))
+        few = {**cells(2, 1, to="1, 1"), **refined(0), **phases("1: 2")}
+        self.check("verification/manufactured/tresca_2d", Scene(few, FOUR))
 
 
 if __name__ == "__main__":

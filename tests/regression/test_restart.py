@@ -446,7 +446,7 @@ class Killed(RestartCase):
             reference.run()
             with Job("slab_adaptive", self.OVERRIDES) as job:
                 n_kills, newest = 0, 0
-                while newest < 15:
+                while newest < 9:
                     process = job.start("--restart=auto")
                     wait_for(
                         lambda: max(job.steps(), default=0) > newest
@@ -475,7 +475,7 @@ def children(pid):
 class Signals(RestartCase):
     OVERRIDES = {
         "Geometry/Arguments": "32, 16 : 0, 0 : 2, 1 : true",
-        "Time/Phases": "1: 60, 2: 60",
+        "Time/Phases": "1: 40, 2: 40",
         "Output/Fields every": 10,
     }
 
@@ -517,7 +517,7 @@ class Signals(RestartCase):
                 )
                 self.assertIn(signal.Signals(number).name, sentence)
                 rows = self.n_rows(job)
-                self.assertLess(rows, 121)
+                self.assertLess(rows, 81)
                 self.assertEqual(job.steps(), [rows - 2])
             result = job.run("--restart", ranks=ranks)
             self.assertIn("Restart after step", result.stdout)

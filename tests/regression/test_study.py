@@ -391,7 +391,7 @@ class Ladders(TestCase):
             Study__Levels=8,
             Study__Ladders="both",
             **NOTHING_TIMED,
-            Study__Budget=12,
+            Study__Budget=5,
         ) as folder:
             process = folder.run("study", code=0)
             found = re.search(

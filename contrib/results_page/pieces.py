@@ -11,7 +11,7 @@ import matplotlib.pyplot as plt
 
 from plotting import convergence, cost, style, work_precision
 from plotting.results import UserError, read_parameters
-from viscoplastic_contact.program import processor
+from viscoplastic_contact import Program
 
 from . import plan, program, references, tables
 
@@ -69,7 +69,7 @@ def stamp(runner, about=None):
         f"viscoplastic_contact {about['version']}"
         if about.get("version")
         else runner.version(),
-        processor(),
+        Program.processor(),
         str(about.get("date") or datetime.date.today())[:10],
     ]
     return f"\n*{', '.join(word for word in words if word)}.*\n"

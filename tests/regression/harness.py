@@ -299,7 +299,7 @@ def run_study(arguments, ranks, work, code=None):
     package = str(SOURCE / "contrib" / "python")
     if package not in sys.path:
         sys.path.insert(0, package)
-    from viscoplastic_contact.study import effects, price_report, pricing  # noqa: F401
+    from viscoplastic_contact.study import effects, ladder, pricing  # noqa: F401
 
     def task():
         os.environ.update(study_environment())

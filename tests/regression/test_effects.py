@@ -38,10 +38,9 @@ from plotting import effects as picture
 from plotting.command import main as plot
 from plotting.results import read_statistics
 from viscoplastic_contact import Program
+from viscoplastic_contact.scene import set_options
 from viscoplastic_contact.study import effects
-from viscoplastic_contact.study.console import Console
 from viscoplastic_contact.study.effects_report import percent
-from viscoplastic_contact.study.runs import set_options
 from viscoplastic_contact.study.scene import Scene
 from viscoplastic_contact.study.variants import (
     DISCRETIZATION,
@@ -49,6 +48,7 @@ from viscoplastic_contact.study.variants import (
     PROBLEM,
     effect_variants,
 )
+from viscoplastic_contact.study.words import Console
 
 SLAB = {
     "Geometry__Arguments": "16, 8 : 0, 0 : 2, 1 : true",

@@ -28,7 +28,7 @@ from plotting.units import Units
 from reporting import bill, body, tables, thinning, written
 from reporting.markup import formula
 from reporting.surface import Surface
-from viscoplastic_contact.study import price_report
+from viscoplastic_contact.study.pricing import as_markdown
 
 UNITS = {"Units/Length": "mm", "Units/Time": "s", "Units/Stress": "MPa"}
 MOST_BYTES = 5_000_000
@@ -407,7 +407,7 @@ Two *words* and **more**, a < b, [a link](place.md), 2*3*4.
     def test_price(self):
         """What the console says becomes paragraphs, points and options."""
         said = "Pilots:\n  a: 8 cells,   1 s\n  b: 9 cells\nNow with\n  --set A/B=1\n\nEnd\n"
-        text = written.html(price_report.as_markdown(said), Path())
+        text = written.html(as_markdown(said), Path())
         self.assertEqual(
             re.sub(r"\n", "", text),
             "<p>Pilots:</p><ul><li>a: 8 cells, 1 s</li><li>b: 9 cells</li></ul>"

@@ -21,7 +21,7 @@ sys.path.insert(0, str(SOURCE / "contrib"))
 from plotting.results import UserError
 from plotting.study import Study
 from results_page import page, pieces, plan, references, tables
-from viscoplastic_contact.program import set_options
+from viscoplastic_contact.scene import set_options
 
 UNIFORM = ("uniform", "forward Euler", "cell means")
 ADAPTIVE = ("adaptive", "forward Euler", "cell means")

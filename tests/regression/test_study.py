@@ -21,7 +21,7 @@ from plotting import cost
 from plotting.results import read_statistics
 from reporting import run as report_of_run
 from reporting import written
-from viscoplastic_contact.study import solvers
+from viscoplastic_contact.study import cost as solvers
 from viscoplastic_contact.study.record import PHASES
 
 MANUFACTURED = SOURCE / "prm" / "verification" / "manufactured"

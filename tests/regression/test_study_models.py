@@ -17,7 +17,16 @@ import numpy as np
 SOURCE = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(SOURCE / "contrib" / "python"))
 
-from viscoplastic_contact.study.cost import CostSample, fit_cost
+from viscoplastic_contact.study.cost import (
+    DIRECT,
+    GEOMETRIC,
+    CostSample,
+    SolverDemand,
+    choose_solver,
+    expected_cost,
+    expected_memory,
+    fit_cost,
+)
 from viscoplastic_contact.study.effects import (
     AS_LARGE_AS_THE_ERROR,
     BELOW_THE_ERROR,
@@ -42,20 +51,11 @@ from viscoplastic_contact.study.histories import (
     interactions,
     piecewise_linear,
 )
-from viscoplastic_contact.study.phases import (
-    n_steps,
-    read_phases,
-    scale_phases,
-    write_phases,
-)
 from viscoplastic_contact.study.price import (
+    ToleranceSample,
     WorkPrecisionModel,
-    cheapest,
-    ideal_seconds,
+    fit_tolerance,
     list_prices,
-    most_accurate,
-    next_refinement,
-    predict,
     price_in_words,
 )
 from viscoplastic_contact.study.pricing import stagnation
@@ -70,19 +70,11 @@ from viscoplastic_contact.study.record import (
     read_table,
     to_json,
 )
-from viscoplastic_contact.study.solvers import (
-    DIRECT,
-    GEOMETRIC,
-    SolverDemand,
-    choose_solver,
-    expected_cost,
-    expected_memory,
-)
-from viscoplastic_contact.study.tolerance import (
-    ToleranceSample,
-    fit_tolerance,
-    price_of,
-    tolerance_price_in_words,
+from viscoplastic_contact.study.scene import (
+    n_steps,
+    read_phases,
+    scale_phases,
+    write_phases,
 )
 from viscoplastic_contact.study.variants import (
     OBSERVATION,
@@ -414,20 +406,20 @@ class Prices(TestCase):
 
     def test_cheapest_is_cheapest(self):
         m = model()
-        found = cheapest(m, 0.01)
+        found = m.cheapest(0.01)
         self.assertLessEqual(found.error, 0.01)
         # No level and no number of steps is cheaper.
         for level in range(-2, 11):
             for k in ladder_of_steps(0.05, 1e-4):
-                other = predict(m, level, k)
+                other = m.predict(level, k)
                 if other.error <= 0.01:
                     self.assertGreaterEqual(other.seconds, 0.999 * found.seconds)
-        self.assertLessEqual(ideal_seconds(m, 0.01), 1.01 * found.seconds)
-        self.assertGreater(ideal_seconds(m, 0.01), 0.2 * found.seconds)
+        self.assertLessEqual(m.ideal_seconds(0.01), 1.01 * found.seconds)
+        self.assertGreater(m.ideal_seconds(0.01), 0.2 * found.seconds)
 
     def test_budget(self):
         m = model()
-        self.assertLessEqual(most_accurate(m, 10.0).seconds, 10.0)
+        self.assertLessEqual(m.most_accurate(10.0).seconds, 10.0)
         prices = list_prices(m, [0.1, 1e-4], 10.0)
         self.assertTrue(prices[0].is_in_budget)
         self.assertFalse(prices[1].is_in_budget)
@@ -437,12 +429,12 @@ class Prices(TestCase):
         sentence = price_in_words(m, prices[1], 10.0)
         self.assertIn("not within 10 s", sentence)
         self.assertIn("the smallest error there is about", sentence)
-        self.assertIsNone(most_accurate(m, 1e-6))
+        self.assertIsNone(m.most_accurate(1e-6))
 
     def test_stability_limit(self):
         m = model()
         m.largest_k = 0.01
-        self.assertLessEqual(cheapest(m, 0.5).k, 0.01)
+        self.assertLessEqual(m.cheapest(0.5).k, 0.01)
 
     def test_steps_to_a_tolerance(self):
         # Heun's method: 20 TOL^(-1/2) steps, and five for events.
@@ -450,38 +442,38 @@ class Prices(TestCase):
         steps = [(1.0 / tol, 1.0, 20.0 * tol**-0.5 + 5.0) for tol in (0.16, 0.04, 0.01)]
         m.chosen_steps = fit_two_powers(steps, Prior(p=0.5))
         m.order, m.k, m.largest_k, m.smallest_k = 2, 0.04, 0.16, 0.01
-        finer = predict(m, 0, 0.0025)
+        finer = m.predict(0, 0.0025)
         self.assertEqual(finer.steps, 405)
         self.assertEqual(finer.k, 0.0025)
         # A sixteenth of the tolerance: four times as many steps.
         self.assertEqual(write_phases(finer.phases), "0.5: 40, 1: 40")
         self.near(finer.seconds, m.seconds(m.h, 0.0025), 1e-3 * finer.seconds)
         self.assertFalse(finer.is_far)  # one level beyond
-        self.assertTrue(predict(m, 0, 0.0006).is_far)
-        self.assertEqual(predict(m, 0, 1.0).k, 0.16)  # coarser has not been measured
-        found = cheapest(m, 0.01)
+        self.assertTrue(m.predict(0, 0.0006).is_far)
+        self.assertEqual(m.predict(0, 1.0).k, 0.16)  # coarser has not been measured
+        found = m.cheapest(0.01)
         self.assertLessEqual(found.error, 0.01 * (1.0 + 1e-12))
         for level in range(-2, 11):
             for k in ladder_of_steps(0.16, 1e-5):
-                other = predict(m, level, k)
+                other = m.predict(level, k)
                 if other.error <= 0.01:
                     self.assertGreaterEqual(other.seconds, 0.99 * found.seconds)
-        self.assertLessEqual(ideal_seconds(m, 0.01), 1.01 * found.seconds)
+        self.assertLessEqual(m.ideal_seconds(0.01), 1.01 * found.seconds)
         (price,) = list_prices(m, [0.01], 1e9)
         self.assertIn("step tolerance", price_in_words(m, price, 1e9))
-        self.assertIn("A quarter of the step tolerance", next_refinement(m))
+        self.assertIn("A quarter of the step tolerance", m.next_refinement())
 
     def test_errors_without_one_part(self):
         m = model()
         m.error = fit_error(ladders((2.0, 1.0, 1e-9, 1.0)))
         # Steps cost nothing: as few as there are phases.
-        self.assertEqual(cheapest(m, 0.1).steps, 2)
-        self.assertTrue(math.isfinite(ideal_seconds(m, 0.1)))
+        self.assertEqual(m.cheapest(0.1).steps, 2)
+        self.assertTrue(math.isfinite(m.ideal_seconds(0.1)))
         m.error = fit_error(ladders((0.0, 1.0, 3.0, 1.0)))
-        self.assertEqual(cheapest(m, 0.1).mesh_level, -2)
-        self.assertTrue(math.isfinite(ideal_seconds(m, 0.1)))
+        self.assertEqual(m.cheapest(0.1).mesh_level, -2)
+        self.assertTrue(math.isfinite(m.ideal_seconds(0.1)))
         m.error = fit_error([])
-        self.assertIsNone(cheapest(m, 0.1))
+        self.assertIsNone(m.cheapest(0.1))
         self.assertFalse(list_prices(m, [0.1], 10.0)[0].is_in_budget)
 
 
@@ -601,22 +593,22 @@ class Tolerances(TestCase):
         model.is_kept = True
         self.assertEqual(model.tolerance_for(0.006), 0.006)
         seconds = model.predict(0.007).seconds
-        self.near(model.tolerance_within(seconds), 0.007, 1e-6)
-        self.assertIsNone(model.tolerance_within(0.1))  # less than the constant
+        self.near(model.most_accurate(seconds).tolerance, 0.007, 1e-6)
+        self.assertIsNone(model.most_accurate(0.1))  # less than the constant
 
     def test_prices_in_words(self):
         model = fit_tolerance(ladder(0.02, 4), 2, 2)
-        price = price_of(model, 0.006, 1000.0)
+        price = model.price(0.006, 1000.0)
         self.assertTrue(price.is_in_budget)
         self.assertFalse(price.is_far)
         self.assertGreater(price.halving, 4.0)
         self.assertLess(price.halving, 5.7)
-        text = tolerance_price_in_words(model, price, 1000.0)
+        text = price_in_words(model, price, 1000.0)
         self.assertTrue(text.startswith("Error 0.006: tolerance 0.01, "), text)
-        self.assertTrue(price_of(model, 0.001, 1e9).is_far)
-        large = price_of(model, 1e-5, 20.0)
+        self.assertTrue(model.price(0.001, 1e9).is_far)
+        large = model.price(1e-5, 20.0)
         self.assertFalse(large.is_in_budget)
-        text = tolerance_price_in_words(model, large, 20.0)
+        text = price_in_words(model, large, 20.0)
         self.assertIn("not within 20 s, it would take about", text)
         self.assertIn("the smallest error there is about 0.00", text)
 

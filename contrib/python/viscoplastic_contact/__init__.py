@@ -11,7 +11,7 @@
 doc/python.md has examples. Needs numpy, and meshio for fields.
 """
 
-from .program import Program, RunError, StudyResults
+from .program import Program, StudyResults
 from .results import NotAvailable, Record, Results, read_parameters, read_statistics
 from .scene import scene_text, write_scene
-from .tables import UserError, read_effects, read_study_about, read_study_table
+from .tables import RunError, UserError, read_effects, read_study_about, read_study_table

@@ -1,16 +1,19 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Running the program and its studies."""
 
+import ctypes
 import datetime
 import os
 import shutil
+import signal
 import subprocess
 import tempfile
 from pathlib import Path
 
 from .results import Results
-from .scene import value_text, write_scene
+from .scene import set_options, write_scene
 from .tables import (
+    RunError,
     UserError,
     frame,
     read_effects,
@@ -21,14 +24,6 @@ from .tables import (
 # contrib/python/viscoplastic_contact of the sources, or the same below
 # share/viscoplastic_contact of an installation.
 TOP = Path(__file__).resolve().parents[3]
-
-
-class RunError(UserError):
-    """The program has refused or ended a run: its sentence, and its code."""
-
-    def __init__(self, sentence, code):
-        super().__init__(sentence)
-        self.code = code
 
 
 class StudyResults:
@@ -64,29 +59,6 @@ def find_executable():
     )
 
 
-def processor():
-    """The model of the CPU and the number of cores this process may use."""
-    model = "unknown processor"
-    try:
-        for line in Path("/proc/cpuinfo").read_text(encoding="utf-8").splitlines():
-            if line.startswith("model name"):
-                model = line.split(":", 1)[1].strip()
-                break
-    except OSError:
-        pass
-    cores = len(os.sched_getaffinity(0))
-    return f"{model}, {cores} core" + ("s" if cores != 1 else "")
-
-
-def set_options(overrides):
-    """{"Section/Entry": value} as options of the program."""
-    return [
-        word
-        for name, value in (overrides or {}).items()
-        for word in ("--set", f"{name}={value_text(value, name)}")
-    ]
-
-
 class Program:
     """The program, run on so many ranks.
 
@@ -113,20 +85,62 @@ class Program:
         """The same on one rank."""
         return Program(self.executable, environment=self.environment)
 
+    def process(self, stdout):
+        """What processes have in common."""
+        null, pipe = subprocess.DEVNULL, subprocess.PIPE
+        streams = {"stdin": null, "stdout": stdout, "stderr": pipe, "text": True}
+        return {"env": self.environment, **streams}
+
     def call(self, *arguments, stdout=subprocess.PIPE):
         """What the program prints."""
-        process = subprocess.run(
-            self.command(*arguments),
-            env=self.environment,
-            stdin=subprocess.DEVNULL,
-            stdout=stdout,
-            stderr=subprocess.PIPE,
-            text=True,
-        )
-        if process.returncode != 0:
-            code = process.returncode
-            raise RunError(sentence(process.stderr, code), code)
+        process = subprocess.run(self.command(*arguments), **self.process(stdout))
+        check_end(process.returncode, process.stderr)
         return process.stdout
+
+    def launch(self, *arguments, stdout=subprocess.DEVNULL, limit=None):
+        """A call that passes on the signals SIGINT and SIGTERM that come meanwhile, at
+        which the program ends after a checkpoint, and ends it after so many seconds as
+        a limit: then raises subprocess.TimeoutExpired. Returns the name of the first
+        signal; empty without one."""
+        received = []
+        process = subprocess.Popen(
+            self.command(*arguments),
+            start_new_session=True,
+            preexec_fn=die_with_parent,
+            **self.process(stdout),
+        )
+
+        def forward(number, _):
+            received.append(signal.Signals(number).name)
+            process.send_signal(number)
+
+        before = {n: signal.signal(n, forward) for n in (signal.SIGINT, signal.SIGTERM)}
+        try:
+            _, messages = process.communicate(timeout=limit)
+        except subprocess.TimeoutExpired:
+            process.terminate()
+            process.communicate()
+            if not received:
+                raise
+            messages = ""
+        finally:
+            for number, handler in before.items():
+                signal.signal(number, handler)
+        check_end(process.returncode, messages, *received[:1])
+        return "".join(received[:1])
+
+    @staticmethod
+    def processor():
+        """The model of the CPU and the number of cores this process may use."""
+        model = "unknown processor"
+        try:
+            lines = Path("/proc/cpuinfo").read_text(encoding="utf-8").splitlines()
+            names = [line for line in lines if line.startswith("model name")]
+            model = names[0].split(":", 1)[1].strip() if names else model
+        except OSError:
+            pass
+        cores = len(os.sched_getaffinity(0))
+        return f"{model}, {cores} core" + ("s" if cores != 1 else "")
 
     def version(self):
         """The line of --version."""
@@ -134,7 +148,7 @@ class Program:
 
     def origin(self):
         """Where and when measurements are made: version, machine and date."""
-        return f"{self.version()}; {processor()}; {datetime.date.today()}"
+        return f"{self.version()}; {self.processor()}; {datetime.date.today()}"
 
     def check(self, scene, overrides=None):
         """What --check prints: effects, size, solver and memory."""
@@ -152,28 +166,25 @@ class Program:
         """The StudyResults of a scene; what is finished is not repeated."""
         from .study.ladder import Study  # scipy takes time
         from .study.runs import StudyRuns
+        from .study.words import Console
 
-        console, words = self.of_study(scene, directory, overrides, log)
-        Study(StudyRuns(self, *words), console).run()
+        words = self.of_study(scene, directory, overrides)
+        Study(StudyRuns(self, *words), Console(log=log)).run()
         return StudyResults(Path(directory) / "study")
 
     def effects(self, scene, directory, overrides=None, log=None):
         """What leaving out each effect changes: effects.json."""
         from .study.effects import EffectsStudy
+        from .study.words import Console
 
-        console, words = self.of_study(scene, directory, overrides, log)
-        EffectsStudy(self, *words, console).run()
+        words = self.of_study(scene, directory, overrides)
+        EffectsStudy(self, *words, Console(log=log)).run()
         return read_effects(Path(directory) / "effects" / "effects.json")
 
-    def of_study(self, scene, directory, overrides, log):
-        """The console of a study, and its files and entries."""
-        from .study.console import Console
-
+    def of_study(self, scene, directory, overrides):
+        """The files and entries of a study."""
         entries = {**(overrides or {}), "Output/Directory": Path(directory).resolve()}
-        return Console(log=log), (
-            parameter_files(scene, directory),
-            [f"{name}={value_text(value, name)}" for name, value in entries.items()],
-        )
+        return parameter_files(scene, directory), set_options(entries)[1::2]
 
     def compute(self, scene, directory, overrides, restart, log):
         directory = Path(directory).resolve()
@@ -199,8 +210,22 @@ def parameter_files(scene, directory):
     return [scene] if isinstance(scene, (str, Path)) else list(scene)
 
 
-def sentence(messages, code):
-    """What the program says of itself among the messages of a run."""
+def die_with_parent():
+    """In a new process: what nobody waits for any more ends. Linux only."""
+    try:
+        ctypes.CDLL(None).prctl(1, signal.SIGKILL)  # PR_SET_PDEATHSIG
+    except (OSError, AttributeError):
+        pass
+
+
+def check_end(code, messages, *received):
+    """Raise what the program says of itself among its messages, unless it has done
+    what it should."""
     name = "viscoplastic_contact: "
-    said = [line[len(name) :] for line in messages.splitlines() if line.startswith(name)]
-    return said[-1] if said else messages.strip() or f"the program ended with code {code}"
+    if code != 0:
+        lines = messages.splitlines()
+        said = [line[len(name) :] for line in lines if line.startswith(name)]
+        sentence = said[-1] if said else messages.strip()
+        raise RunError(
+            sentence or f"the program ended with code {code}", code, *received
+        )

@@ -63,6 +63,14 @@ def scene_text(scene):
     return "\n".join(lines(scene, "", "")) + "\n"
 
 
+def set_options(overrides):
+    """{"Section/Entry": value}, or texts `Section/Entry=value', as options of the
+    program."""
+    if isinstance(overrides, dict):
+        overrides = [f"{name}={value_text(v, name)}" for name, v in overrides.items()]
+    return [word for text in overrides or () for word in ("--set", text)]
+
+
 def write_scene(scene, path):
     """Write the parameter file; returns its path."""
     path = Path(path)

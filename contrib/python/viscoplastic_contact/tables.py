@@ -18,6 +18,15 @@ class UserError(Exception):
     """Something the user can mend; its text is the whole message."""
 
 
+class RunError(UserError):
+    """The program has refused or ended a run: its sentence, its code, and the name of
+    a signal that came meanwhile."""
+
+    def __init__(self, sentence, code, signal=""):
+        super().__init__(sentence)
+        self.code, self.signal = code, signal
+
+
 def without_unit(name):
     """The name of a column or a field, which a unit may follow: `t [day]'."""
     return re.sub(r"\s*\[[^\]]*\]$", "", name.strip())

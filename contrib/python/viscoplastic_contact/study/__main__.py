@@ -85,35 +85,27 @@ def wanted(text):
 
 
 def run(task, options, program):
-    from .console import Console
+    """The directory of the results."""
     from .effects import EffectsStudy
     from .ladder import Study
-    from .price_report import directory_of
     from .pricing import run_at_price
     from .runs import StudyRuns
+    from .words import Console
 
     console = Console(options.quiet, options.log)
-
-    def tell(directory):
-        if options.directory:
-            Path(options.directory).write_text(str(Path(directory).resolve()))
-
-    if task == "price":
-        of_run = [
-            f"--{name}" for name in ("quiet", "verbose") if getattr(options, name)
-        ]
-        if options.restart:
-            of_run.append(RESTART[options.restart])
-        runs = StudyRuns(program, options.files, options.set)
-        run_at_price(runs, options.error, console, options.check, of_run)
-        tell(directory_of(runs.scene))
-        return
-    if task == "study":
-        study = Study(StudyRuns(program, options.files, options.set), console)
-    else:
+    if task == "effects":
         study = EffectsStudy(program, options.files, options.set, console)
+    else:
+        runs = StudyRuns(program, options.files, options.set)
+    if task == "price":
+        names = ("quiet", "verbose")
+        of_run = [f"--{name}" for name in names if getattr(options, name)]
+        of_run += [RESTART[options.restart]] if options.restart else []
+        return run_at_price(runs, options.error, console, options.check, of_run)
+    if task == "study":
+        study = Study(runs, console)
     study.run()
-    tell(study.directory)
+    return study.directory
 
 
 def main(arguments):
@@ -127,15 +119,14 @@ def main(arguments):
     # Between runs a signal ends the command at once.
     signal.signal(signal.SIGINT, signal.SIG_DFL)
     try:
-        run(task, options, Program(ranks=max(1, options.ranks)))
-    except UserError as error:
+        directory = run(task, options, Program(ranks=max(1, options.ranks)))
+        if options.directory:
+            Path(options.directory).write_text(str(Path(directory).resolve()))
+        return 0
+    except (UserError, OSError) as error:
         print(f"contrib/{task}: {error}", file=sys.stderr)
         code = getattr(error, "code", 1)
         return code if code in (1, 2, 3) else 1
-    except OSError as error:
-        print(f"contrib/{task}: {error}", file=sys.stderr)
-        return 1
-    return 0
 
 
 if __name__ == "__main__":

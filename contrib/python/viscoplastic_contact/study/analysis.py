@@ -1,15 +1,15 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """What the runs of a study say together: errors, laws of errors and costs."""
 
-from dataclasses import dataclass
 from math import isfinite, log2, nan, sqrt
+from operator import add
+from typing import NamedTuple
 
 from .cost import CostSample, fit_cost
 from .fit import Finer, Prior, fit_error, fit_error_parts, fit_two_powers
-from .phases import largest_step
-from .price import WorkPrecisionModel
+from .price import ToleranceSample, WorkPrecisionModel, fit_tolerance
 from .record import FIELD_ERRORS, vector_name
-from .tolerance import ToleranceSample, fit_tolerance
+from .scene import largest_step
 
 # What can say how large the error of a run is, the best first.
 MEASURES = {
@@ -18,6 +18,9 @@ MEASURES = {
     "estimate_total": "estimated error of u in the energy norm",
     "quantities": "largest error of all quantities of interest",
 }
+
+# Of the estimate: of the mesh, the initial data, which it approximates, and the steps.
+PARTS = ("space", "initial", "time")
 
 
 def kind_of(quantity):
@@ -35,27 +38,25 @@ def kind_of(quantity):
 def size_of(record, quantity):
     """The size of a quantity; for a component that of its vector. Zero for what
     only rounding keeps from being that."""
-    square = largest = 0.0
-    for name, value in record.quantities.items():
-        if not isfinite(value):
-            continue
-        is_component = vector_name(name) != name and vector_name(quantity) != quantity
-        if name == quantity or (
-            is_component and vector_name(name) == vector_name(quantity)
-        ):
-            square += value * value
-        if kind_of(name) == kind_of(quantity):
-            largest = max(largest, abs(value))
+    known = {name: v for name, v in record.quantities.items() if isfinite(v)}
+    vector = vector_name(quantity)
+    square = sum(
+        value * value
+        for name, value in known.items()
+        if name == quantity
+        or (vector_name(name) == vector and vector not in (name, quantity))
+    )
+    kind = kind_of(quantity)
+    alike = (abs(value) for name, value in known.items() if kind_of(name) == kind)
     size = sqrt(square)
-    return size if size > 1e-9 * largest else 0.0
+    return size if size > 1e-9 * max(alike, default=0.0) else 0.0
 
 
 def quantity_error(record, quantity, reference):
     """The error of a quantity of interest, relative to its size (of vectors: to
     that of the vector) in the reference; not a number without one."""
-    if reference is None or record.key == reference.key:
-        return nan
-    size = size_of(reference, quantity)
+    has_other = reference is not None and record.key != reference.key
+    size = size_of(reference, quantity) if has_other else 0.0
     if not size > 0.0:
         return nan
     return abs(record.quantity(quantity) - reference.quantity(quantity)) / size
@@ -98,23 +99,18 @@ def fit_measure(records, measure, reference):
         for record in records
     ]
     if measure == "estimate_total":
-        space = [
-            record.number("estimate_space") + record.number("estimate_initial")
-            for record in records
-        ]
-        time = [record.number("estimate_time") for record in records]
-        return fit_error_parts(samples, space, time)
-    is_norm = measure in FIELD_ERRORS
+        parts = ([r.number(f"estimate_{part}") for r in records] for part in PARTS)
+        space, initial, time = parts
+        return fit_error_parts(samples, list(map(add, space, initial)), time)
+    is_norm, finer = measure in FIELD_ERRORS, None
     # A reference with meshes of its own is on no ladder of h and k.
     if (
-        reference is None
-        or "tolerance" in reference.numbers
-        or (is_norm and not are_differences(records))
+        reference is not None
+        and "tolerance" not in reference.numbers
+        and (not is_norm or are_differences(records))
     ):
-        return fit_error(samples)
-    finer = Finer(
-        reference.number("h"), reference.step_measure, 2.0 if is_norm else 1.0, 1.0
-    )
+        of_reference = reference.number("h"), reference.step_measure
+        finer = Finer(*of_reference, 2.0 if is_norm else 1.0, 1.0)
     return fit_error(samples, finer)
 
 
@@ -142,19 +138,19 @@ def expected_steps(scene, records, key):
 
 def cost_of(records):
     """The fit of seconds and memory."""
-    return fit_cost(
-        [
-            CostSample(
-                record.demand,
-                record.number("steps"),
-                record.number("set_ups"),
-                record.number("seconds_set_up"),
-                record.number("seconds_total"),
-                record.number("peak_memory_MB"),
-            )
-            for record in records
-        ]
-    )
+    names = "steps,set_ups,seconds_set_up,seconds_total,peak_memory_MB".split(",")
+    return fit_cost([CostSample(r.demand, *map(r.number, names)) for r in records])
+
+
+def cost_of_run(scene, records, key):
+    """Seconds and memory (in MB) that a run is expected to take by these records."""
+    finest = max(records, key=lambda record: record.key.mesh_level)
+    levels = key.mesh_level - finest.key.mesh_level
+    steps = expected_steps(scene, records, key)
+    n_set_ups = scene.n_set_ups(key.variant.strategy, steps, scene.planned_steps(key))
+    dofs = finest.number("dofs") * 2.0 ** (scene.dimension * levels)
+    cost = cost_of(records)
+    return cost.seconds(dofs, steps, n_set_ups), cost.memory(dofs, steps, n_set_ups)
 
 
 def fit_work_precision(scene, records, timed, measure, reference):
@@ -207,42 +203,30 @@ def fit_tolerance_runs(scene, records, measure, reference):
         )
 
     have_others = not all(map(has_first_mesh, records))
+    names = "seconds_total,cells,dofs,steps,peak_memory_MB".split(",")
     samples = [
         ToleranceSample(
             record.number("tolerance"),
             nan
             if have_others and has_first_mesh(record)
             else error_of(record, measure, reference),
-            *(
-                record.number(name)
-                for name in ("seconds_total", "cells", "dofs", "steps", "peak_memory_MB")
-            ),
+            *map(record.number, names),
         )
         for record in records
     ]
     is_norm, is_estimate = measure in FIELD_ERRORS, measure == controlled
     finer = None
-    if (
-        (not is_norm or are_differences(records))
-        and not is_estimate
-        and reference is not None
-        and "tolerance" in reference.numbers
-    ):
-        finer = reference.number("tolerance")
+    if (not is_norm or are_differences(records)) and not is_estimate:
+        # Absent of other runs.
+        finer = reference.numbers.get("tolerance") if reference is not None else None
     # Schemes may differ from run to run, but not in one method variant.
-    model = fit_tolerance(
-        samples,
-        scene.dimension,
-        records[0].key.variant.order,
-        finer,
-        2.0 if is_norm else 1.0,
-    )
+    order, m = records[0].key.variant.order, 2.0 if is_norm else 1.0
+    model = fit_tolerance(samples, scene.dimension, order, finer, m)
     model.is_kept = is_estimate
     return model
 
 
-@dataclass
-class Richardson:
+class Richardson(NamedTuple):
     """Richardson extrapolation of three values, on meshes and with steps that halve
     each time. The error is that of the last value, relative to the size of the
     quantity. The last value can serve as a reference if the differences shrink with

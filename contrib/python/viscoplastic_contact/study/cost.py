@@ -1,7 +1,10 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""What the runs of a study say of cost: powers of the number of unknowns in
-seconds and memory, for each linear solver by itself."""
+"""What runs cost: the cost model of the program (source/linear_solvers/solver_choice.cc),
+which prices need for meshes that nobody has, and powers of the number of unknowns that
+are fitted to the runs of a study. Each run.json says which solver the program itself
+has chosen and what it expected; tests/regression/test_study.py compares."""
 
+import math
 from dataclasses import dataclass, field, replace
 from typing import NamedTuple
 
@@ -14,7 +17,131 @@ from .fit import (
     log_ratio,
     misfit_of,
 )
-from .solvers import DIRECT, SolverDemand, choose_solver, expected_cost, expected_memory
+
+DIRECT = "direct"
+GEOMETRIC = "geometric multigrid"
+ALGEBRAIC = "algebraic multigrid"
+SOLVERS = (DIRECT, GEOMETRIC, ALGEBRAIC)
+
+
+@dataclass
+class SolverDemand:
+    """What decides on the solver of a system."""
+
+    choice: str = "automatic"
+    dimension: int = 2
+    ranks: int = 1
+    # The largest Poisson's ratio of the material that the matrix stands for.
+    poissons_ratio: float = 0.0
+    # How often the solver will be used at least, and how often in a step.
+    solves: int = 1
+    solves_per_step: int = 1
+    # Degrees of freedom in all, of these on the contact face, and those of the
+    # mesh that the present one is refined from (0 where it is not refined).
+    dofs: int = 0
+    face_dofs: int = 0
+    first_dofs: int = 0
+    # Whether there is friction on the face.
+    friction: bool = False
+
+
+# As benchmarks/results.md has them, at so many degrees of freedom: (seconds,
+# exponent) of a new mesh without a factorization, of what that adds, of a step
+# with each solver, and how many times more algebraic multigrid takes.
+COSTS = {
+    2: (5e5, (7.0, 1.0), (9.4, 1.1), (0.41, 1.07), (1.08, 1.07), 5.0),
+    3: (1.1e5, (2.3, 1.0), (14.5, 1.3), (0.74, 1.24), (0.37, 1.0), 15.0),
+}
+
+
+def has_small_first_mesh(demand):
+    """Whether the mesh is refined from a small one, on which a direct solver costs
+    little against a multigrid cycle on the present one."""
+    share = demand.dofs // 20
+    largest = max(600, min(share, 6000))
+    if demand.dimension == 2:
+        largest = max(2000, min(share, 20000))
+    return 0 < demand.first_dofs <= largest
+
+
+def has_levels(demand):
+    """Whether geometric multigrid has meshes to work on."""
+    return has_small_first_mesh(demand) or 0 < demand.first_dofs <= demand.dofs // 3
+
+
+def prefer_direct(demand):
+    """Whether the direct solver is expected to win."""
+    is_2d = demand.dimension == 2
+    # The dense face problem: 200 MB and a cubic set-up. Beyond, the memory of the
+    # factor.
+    if demand.face_dofs > 5000 or demand.dofs >= (2000000 if is_2d else 200000):
+        return False
+    # An exact solution, where it costs next to nothing.
+    is_large_face = demand.friction and demand.face_dofs > 1500
+    if not is_large_face and demand.dofs < (
+        2000 if demand.solves < 4 and has_levels(demand) else 20000
+    ):
+        return True
+    if has_levels(demand):
+        costs = (expected_cost(solver, demand) for solver in (DIRECT, GEOMETRIC))
+        direct, multigrid = (set_up + demand.solves * step for set_up, step in costs)
+        return direct < multigrid
+    # Algebraic multigrid takes several times the iterations.
+    return (
+        is_2d
+        or demand.poissons_ratio > 0.45
+        or (demand.dofs < 150000 and demand.solves >= 20)
+    )
+
+
+def choose_solver(demand):
+    if demand.choice == "direct" or (
+        demand.choice == "automatic" and demand.ranks == 1 and prefer_direct(demand)
+    ):
+        return DIRECT
+    if demand.choice != "algebraic multigrid" and has_levels(demand):
+        return GEOMETRIC
+    return ALGEBRAIC
+
+
+def expected_cost(solver, demand):
+    """Seconds of one set-up, with all that a new mesh brings, and of one step.
+    Only ratios mean anything on other machines and in other scenes."""
+    n_dofs, mesh, factorization, direct, multigrid, algebraic = COSTS[demand.dimension]
+
+    def seconds(power):
+        return power[0] * (demand.dofs / n_dofs) ** power[1]
+
+    # What small systems take, whatever their solver.
+    least_set_up, least_step = 1e-3, 2.5e-3
+    set_up = least_set_up + seconds(mesh)
+    if solver == DIRECT:
+        # Some 60 products of a step with friction, limited by memory.
+        products = 1e-7 * demand.face_dofs**2 if demand.friction else 0.0
+        return set_up + seconds(factorization), least_step + seconds(direct) + products
+    factor = algebraic
+    if solver == GEOMETRIC:
+        # Cycles of algebraic multigrid on a large first mesh.
+        factor = 1.0 if has_small_first_mesh(demand) else 1.6
+    # Nearly incompressible bodies take more iterations.
+    growth = max(1.0, 0.35 / math.sqrt(max(1.0 - 2.0 * demand.poissons_ratio, 1e-8)))
+    return set_up, least_step + seconds(multigrid) * factor * growth
+
+
+def expected_memory(solver, demand):
+    """In MB, what matrix, solver and vectors take beyond mesh and spaces."""
+    is_2d, n = demand.dimension == 2, float(demand.dofs)
+    # 5 or 14 blocks a node, with their columns; some 20 vectors.
+    matrix, vectors = n * (90.0 if is_2d else 14.0 * 76.0 / 3.0), n * 20.0 * 8.0
+    if solver == GEOMETRIC:
+        return 1e-6 * (matrix + vectors + n * (950.0 if is_2d else 1200.0))
+    # A second matrix without the prescribed rows, of 12 bytes an entry, and ML.
+    if solver == ALGEBRAIC:
+        rest = 18.0 * 12.0 + 850.0 if is_2d else 81.0 * 12.0 + 2700.0
+        return 1e-6 * (matrix + vectors + n * rest)
+    # Nested dissection: n log n entries in 2D, n^(4/3) in 3D.
+    factor = n * 78.0 * math.log2(max(n, 2.0)) if is_2d else n * 190.0 * n ** (1 / 3)
+    return 1e-6 * (matrix + vectors + factor + 16.0 * float(demand.face_dofs) ** 2)
 
 
 class CostSample(NamedTuple):
@@ -36,6 +163,9 @@ class SolverModel(NamedTuple):
     set_up: TwoPowers
     step: TwoPowers
     largest: float
+
+    def seconds(self, dofs, steps, n_set_ups):
+        return n_set_ups * self.set_up(dofs) + steps * self.step(dofs)
 
 
 @dataclass
@@ -80,13 +210,13 @@ class CostModel:
         solver = choose_solver(wanted)
         known = self.solvers.get(solver)
         if known and known.step.p_is_fitted:
-            return n_set_ups * known.set_up(dofs) + steps * known.step(dofs)
-        known_solver = solver
+            return known.seconds(dofs, steps, n_set_ups)
+        of_known = solver
         if not known:
-            known_solver = max(self.solvers, key=lambda name: self.solvers[name].largest)
-            known = self.solvers[known_solver]
+            of_known = max(self.solvers, key=lambda name: self.solvers[name].largest)
+            known = self.solvers[of_known]
         n = known.largest
-        there = expected_cost(known_solver, self.demand_at(n, steps, n_set_ups))
+        there = expected_cost(of_known, self.demand_at(n, steps, n_set_ups))
         here = expected_cost(solver, wanted)
         return (
             n_set_ups * known.set_up(n) * here[0] / there[0]
@@ -104,51 +234,38 @@ def fit_cost(samples):
     model = CostModel()
     if not samples:
         return model
-    for s in samples:
-        if s.demand.dofs >= model.demand.dofs:
-            model.demand = s.demand
-    of_set_up, of_step, memory, simple = {}, {}, [], []
-    for s in samples:
-        n = float(s.demand.dofs)
-        solver = choose_solver(s.demand)
-        of_set_up.setdefault(solver, []).append((n, 1.0, s.set_up_seconds / s.n_set_ups))
-        of_step.setdefault(solver, []).append(
-            (n, 1.0, (s.seconds - s.set_up_seconds) / s.steps)
-        )
-        memory.append((n, 1.0, s.memory - expected_memory(solver, s.demand)))
-        simple.append((n, s.seconds / s.steps))
-
+    # The last of the largest.
+    model.demand = max(reversed(samples), key=lambda s: s.demand.dofs).demand
     # Some 10 % of noise in seconds against exponents known to a few tenths.
     # Solving is nearly linear; assembly is, factorizations n^(3/2) and n^2.
     is_2d = model.demand.dimension == 2
     linear = Prior(weight=0.3)
     solve = Prior(p=1.0 if is_2d else 4.0 / 3.0, weight=0.3)
     factorize = Prior(p=1.2 if is_2d else 1.7, weight=0.3)
-    for solver, steps in of_step.items():
+    sizes = [float(s.demand.dofs) for s in samples]
+    names = [choose_solver(s.demand) for s in samples]
+    known_memory = [expected_memory(*of) for of in zip(names, (s.demand for s in samples))]
+    for solver in dict.fromkeys(names):
+        of_it = [(n, s) for n, s, name in zip(sizes, samples, names) if name == solver]
+        set_ups = [(n, 1.0, s.set_up_seconds / s.n_set_ups) for n, s in of_it]
+        steps = [(n, 1.0, (s.seconds - s.set_up_seconds) / s.steps) for n, s in of_it]
         is_direct = solver == DIRECT
         model.solvers[solver] = SolverModel(
-            fit_two_powers(of_set_up[solver], factorize if is_direct else linear),
+            fit_two_powers(set_ups, factorize if is_direct else linear),
             fit_two_powers(steps, solve if is_direct else linear),
-            max(n for n, _, _ in steps),
+            max(n for n, _ in of_it),
         )
     # Meshes, spaces and states.
-    model.other_memory = fit_two_powers(memory, Prior(weight=10.0))
-    model.simple = fit_line(simple, solve.p)
-
-    seconds, megabytes = [], []
-    for s in samples:
-        n = float(s.demand.dofs)
-        solver = choose_solver(s.demand)
-        known = model.solvers[solver]
-        seconds.append(
-            log_ratio(s.n_set_ups * known.set_up(n) + s.steps * known.step(n), s.seconds)
-        )
-        megabytes.append(
-            log_ratio(
-                expected_memory(solver, s.demand) + model.other_memory(n), s.memory
-            )
-        )
-    model.misfit, model.memory_misfit = misfit_of(seconds), misfit_of(megabytes)
+    rest = [(n, 1.0, s.memory - m) for n, s, m in zip(sizes, samples, known_memory)]
+    model.other_memory = fit_two_powers(rest, Prior(weight=10.0))
+    per_step = [(n, s.seconds / s.steps) for n, s in zip(sizes, samples)]
+    model.simple = fit_line(per_step, solve.p)
+    model.misfit = misfit_of(
+        log_ratio(model.solvers[name].seconds(n, s.steps, s.n_set_ups), s.seconds)
+        for n, s, name in zip(sizes, samples, names)
+    )
+    model.memory_misfit = misfit_of(
+        log_ratio(m + model.other_memory(n), s.memory)
+        for n, s, m in zip(sizes, samples, known_memory)
+    )
     return model
-
-

@@ -9,7 +9,6 @@ the same command goes on after an interruption."""
 import time
 from dataclasses import dataclass, field, replace
 from math import inf, nan
-from typing import Optional
 
 from ..tables import UserError
 from .effects_report import effects_in_words, write_effects
@@ -22,8 +21,8 @@ from .histories import (
     interactions,
     largest_of,
 )
-from .record import RunRecord, read_table
-from .runs import Interrupted, StudyRuns
+from .record import RunRecord
+from .runs import Failure, Interrupted, StudyRuns, TooSlow
 from .scene import Scene
 from .variants import KINDS, OBSERVATION, PROBLEM, EffectVariant, both, effect_variants
 
@@ -139,14 +138,8 @@ class Computed:
     cost: RunCost
 
 
-@dataclass
-class Attempt:
-    """How an attempt at a run has ended."""
-
-    computed: Optional[Computed] = None
-    failure: str = ""
-    is_too_long: bool = False
-    is_too_slow: bool = False
+class NoTime(UserError):
+    """The budget leaves none for a run."""
 
 
 def own_memory(record):
@@ -171,6 +164,7 @@ class EffectsStudy:
         self.overrides = with_choices(program, self.files, overrides)
         self.scene = Scene(program, self.files, self.overrides, means=True)
         self.directory = self.scene.directory + "effects/"
+        self.names = self.scene.about.get("names", {})
         self.base = self.make_runs([], self.directory + "scene")
         # What has been found of each simplification: of the problem first, the largest
         # changes first.
@@ -227,56 +221,38 @@ class EffectsStudy:
         return time.monotonic() - self.start + seconds <= self.scene.budget
 
     def make(self, runs, key, limit=None):
-        outcome = runs.make(key, limit)
-        if outcome.interruption:
-            self.stop(outcome.interruption)
-        return outcome
+        return runs.make(key, "the study of effects", limit)
 
-    def stop(self, name):
-        raise Interrupted(
-            f"{name} has ended the study of effects; the same command goes on."
-        )
+    def find_or_make(self, runs, key, expected_seconds, limit=None):
+        """The record of a run. Raises NoTime unless it can be expected to end within the
+        budget."""
+        record = runs.find(key)
+        if not record and not self.is_affordable(expected_seconds):
+            raise NoTime("its run would not end within 'Study/Budget'.")
+        return record or self.make(runs, key, limit)
 
     def compute(self, runs, level, expected_seconds, limit=None):
-        """Find a run, or make it if it can be expected to end within the budget, and
-        if it ends within the limit."""
-        attempt = Attempt()
-
-        def find_or_make(key, expected):
-            record = runs.find(key)
-            if record:
-                return record
-            attempt.is_too_long = not self.is_affordable(expected)
-            if attempt.is_too_long:
-                return None
-            outcome = self.make(runs, key, limit)
-            attempt.failure = outcome.failure
-            attempt.is_too_slow = outcome.is_too_slow
-            return outcome.record
-
+        """A run with its table, see find_or_make()."""
         key = self.key_of(runs, level)
-        record = find_or_make(key, expected_seconds)
-        if not record:
-            return attempt
+        record = self.find_or_make(runs, key, expected_seconds, limit)
         seconds, memory = record.number("seconds_total"), own_memory(record)
-        table = read_table(runs.file_of(key, "statistics.csv"))
         cost = RunCost(seconds, 0.0, memory, 0.0)
-        attempt.computed = Computed(record, table, cost)
         # Once more, to know what is chance. Of long runs only the scene, whose chance
         # then stands for that of others, too.
         if seconds > SHORT_RUN and level in self.of_scene:
             other = self.of_scene[level].cost
             cost.seconds_chance = other.seconds_chance / other.seconds * seconds
             cost.memory_chance = other.memory_chance
-            return attempt
-        again = find_or_make(key._replace(is_timing=True), seconds)
-        if again:
+            return Computed(record, runs.table(key), cost)
+        try:
+            timing = key._replace(is_timing=True)
+            again = self.find_or_make(runs, timing, seconds, limit)
             pairs = (seconds, again.number("seconds_total")), (memory, own_memory(again))
             cost.seconds, cost.memory = map(min, pairs)
             cost.seconds_chance, cost.memory_chance = (abs(a - b) for a, b in pairs)
-        # Without time for that, the first run is enough.
-        attempt.is_too_long = False
-        return attempt
+        except (NoTime, Failure):  # the first run is enough
+            pass
+        return Computed(record, runs.table(key), cost)
 
     def compute_scene(self, level):
         """The scene as it is, to be found in of_scene; whether that is possible."""
@@ -286,16 +262,14 @@ class EffectsStudy:
         coarser = self.of_scene.get(level - 1)
         expected = 0.0 if self.of_scene else -inf
         if coarser:
-            expected = coarser.record.number("seconds_total") * 2.0 ** (
-                self.scene.dimension + 1
-            )
-        attempt = self.compute(self.base, level, expected)
-        self.failure = attempt.failure
-        if not attempt.computed:
-            if not attempt.failure:
-                self.failure = "its run would not end within 'Study/Budget'."
+            growth = 2.0 ** (self.scene.dimension + 1)
+            expected = coarser.record.number("seconds_total") * growth
+        self.failure = ""
+        try:
+            self.of_scene[level] = self.compute(self.base, level, expected)
+        except (NoTime, Failure) as failure:
+            self.failure = str(failure)
             return False
-        self.of_scene[level] = attempt.computed
         if coarser and not self.scene.has_tolerance:
             self.compute_with_longer_steps(level)
         return True
@@ -304,13 +278,12 @@ class EffectsStudy:
         """The scene on the mesh of a level with the steps of the coarser one, if the
         budget allows."""
         key = self.key_of(self.base, level)._replace(time_level=level - 1)
-        record = self.base.find(key)
         seconds = self.of_scene[level].record.number("seconds_total")
-        if not record and self.is_affordable(0.5 * seconds):
-            record = self.make(self.base, key).record
-        if record:
-            path = self.base.file_of(key, "statistics.csv")
-            self.with_longer_steps[level] = read_table(path)
+        try:
+            self.find_or_make(self.base, key, 0.5 * seconds)
+            self.with_longer_steps[level] = self.base.table(key)
+        except (NoTime, Failure):
+            pass
 
     def add_errors(self, changes, level):
         """Put the errors of the quantities of the scene on a level beside changes of
@@ -348,32 +321,32 @@ class EffectsStudy:
             seconds = here.record.number("seconds_total")
             limit = max(LEAST_LIMIT, MOST_TIMES * seconds)
             rest = max(LEAST_LIMIT, self.start + self.scene.budget - time.monotonic())
-            attempt = self.compute(runs, level, seconds, min(limit, rest))
-            attempt.is_too_long |= attempt.is_too_slow and rest < limit
+            computed = self.compute(runs, level, seconds, min(limit, rest))
         except Interrupted:
             raise
-        except UserError as error:  # what is wrong with its entries
-            attempt = Attempt(failure=str(error))
-        if attempt.is_too_long:
+        except NoTime:
             return None, None
-        if not attempt.computed:
+        except TooSlow:
+            if rest < limit:
+                return None, None
+            result.is_too_slow, result.verdict = True, NOT_COMPUTED
+            result.failure = (
+                f"not computed: it takes more than {MOST_TIMES} times the "
+                f"{seconds:.2g} s of the scene."
+            )
+            return result, None
+        except UserError as error:  # or what is wrong with its entries
             without = "Error control/Quantity="
-            if f"'{without[:-1]}'" in attempt.failure and without not in variant.overrides:
+            if f"'{without[:-1]}'" in str(error) and without not in variant.overrides:
                 # Without the effect the scene does not have its quantity of interest.
                 self.runs.pop((variant.name, level), None)
                 other = replace(variant, overrides=[*variant.overrides, without])
                 return self.compare(other, level)
-            result.failure, result.is_too_slow = attempt.failure, attempt.is_too_slow
-            if attempt.is_too_slow:
-                result.failure = (
-                    f"not computed: it takes more than {MOST_TIMES} times the "
-                    f"{seconds:.2g} s of the scene."
-                )
-            if attempt.is_too_slow or variant.is_extreme:
+            result.failure = str(error)
+            if variant.is_extreme:
                 result.verdict = NOT_COMPUTED
             return result, None
-        record, table = attempt.computed.record, attempt.computed.table
-        result.without = attempt.computed.cost
+        record, table, result.without = computed.record, computed.table, computed.cost
         if variant.has_outputs:
             # Of what the runs of studies go without.
             result.without.seconds += record.number("seconds_output")

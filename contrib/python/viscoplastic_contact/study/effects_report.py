@@ -3,13 +3,14 @@
 simplification; effects.json; effects.md, the same for people."""
 
 import re
+import textwrap
 from math import isfinite, log10
 from pathlib import Path
 
-from .record import json_text
+from .record import json_text, picked
 from .report import origin
 from .runs import make_directory, replace_file
-from .words import digits, table_head, table_row
+from .words import digits, table
 
 HEADER = (
     "effect,instead,verdict,changes most,by,error there,energy norm,time,,memory,cells"
@@ -34,10 +35,6 @@ def in_words(quantity, names):
         return f"displacement of {names[place]}"
     where = "of" if match[1] == "reaction" else "on"
     return f"{match[1].replace('_', ' ')} {where} {names[place]}"
-
-
-def names_of(study):
-    return study.scene.about.get("names", {})
 
 
 def percent(value):
@@ -69,40 +66,36 @@ def has_changes(result):
     return not result.failure and result.verdict not in ("never acted", "only watches")
 
 
+def summary(result, names, nothing=""):
+    """The quantity that changes most, by how much, and its error."""
+    if not has_changes(result):
+        return [nothing, "", ""]
+    most = result.decisive
+    return [in_words(most.quantity, names), percent(most.change), percent(most.error)]
+
+
 def cells_of(result, names):
-    variant, decisive = result.variant, result.decisive
-    cells = [variant.effect, variant.instead, result.verdict]
+    cells = [result.variant.effect, result.variant.instead, result.verdict]
     if result.failure:
         return cells + ["-"] * (len(HEADER) - len(cells))
-    full, without, tells = result.with_it, result.without, has_changes(result)
+    full, without = result.with_it, result.without
+    scatter = full.memory_chance + without.memory_chance
     return [
         *cells,
-        in_words(decisive.quantity, names) if tells else "nothing",
-        percent(decisive.change) if tells else "",
-        percent(decisive.error) if tells else "",
+        *summary(result, names, "nothing"),
         percent(result.change_of("energy_norm")),
         share_of_time(result),
         f"{digits(full.seconds - without.seconds, 2)} s",
-        with_chance(
-            full.memory - without.memory,
-            full.memory_chance + without.memory_chance,
-            " MB",
-        ),
+        with_chance(full.memory - without.memory, scatter, " MB"),
         digits(result.cells, 9),
     ]
 
 
 def lines_of(text, width):
     """The words of a text in lines of at most this width, where no word is longer."""
-    lines = [""]
-    for word in text.split():
-        if not lines[-1]:
-            lines[-1] = word
-        elif len(lines[-1]) + 1 + len(word) <= width:
-            lines[-1] += f" {word}"
-        else:
-            lines.append(f"  {word}")
-    return lines
+    wrapper = textwrap.TextWrapper(width, subsequent_indent="  ", break_on_hyphens=False)
+    wrapper.break_long_words = False
+    return wrapper.wrap(" ".join(text.split()))
 
 
 def print_cells(cells):
@@ -115,16 +108,13 @@ def print_cells(cells):
 
 
 def print_row(result, names):
-    tells, decisive = has_changes(result), result.decisive
     # Of fewer cells than the scene has.
     mesh = f" ({result.cells:.0f} cells)" if result.level < 0 and result.cells else ""
     return print_cells(
         [
             f"{result.variant.effect}: {result.variant.instead}{mesh}",
             IN_SHORT.get(result.verdict, result.verdict),
-            in_words(decisive.quantity, names) if tells else "",
-            percent(decisive.change) if tells else "",
-            percent(decisive.error) if tells else "",
+            *summary(result, names),
             "" if result.failure else share_of_time(result, "+-"),
         ]
     )
@@ -136,26 +126,26 @@ def without(result):
 
 def interaction_in_words(interaction, names):
     """Whether two effects interact, in numbers."""
-    quantity, largest = interaction.largest.quantity, interaction.largest
-    first, second = interaction.first, interaction.second
+    largest, first, second = interaction.largest, interaction.first, interaction.second
+    results = first, second, interaction.joint
+    changes = [percent(result.change_of(largest.quantity)) for result in results]
     verdict = "add up, as far as this discretization can tell."
     if interaction.is_clear:
         verdict = "interact."
     elif largest.change > largest.error:
         verdict = "may interact, which this discretization cannot tell."
     return (
-        f"{without(first)} {in_words(quantity, names)} changes by {percent(first.change_of(quantity))}, "
-        f"w{without(second)[1:]} by {percent(second.change_of(quantity))}, without both "
-        f"by {percent(interaction.joint.change_of(quantity))}. This differs from the sum "
-        f"of both changes by up to {percent(largest.change)}, where the error of this "
-        f"quantity is {percent(largest.error)}: they {verdict}"
+        f"{without(first)} {in_words(largest.quantity, names)} changes by {changes[0]}, "
+        f"w{without(second)[1:]} by {changes[1]}, without both by {changes[2]}. This "
+        f"differs from the sum of both changes by up to {percent(largest.change)}, where "
+        f"the error of this quantity is {percent(largest.error)}: they {verdict}"
     )
 
 
 def effects_in_words(study):
     """The table for the console."""
     head = ["without: instead", "", "changes most", "by", "error", "costs"]
-    names = names_of(study)
+    names = study.names
     text = print_cells(head) + "".join(print_row(r, names) for r in study.results)
     sentences = [f"{without(r)}: {r.failure}" for r in study.results if r.failure]
     if study.interaction:
@@ -185,18 +175,17 @@ def markdown(study, about):
     )
     if Path(study.directory, "effects.png").exists():
         text += "![What effects change and cost](effects.png)\n\n"
-    kind = ""
-    for result in study.results:
-        if result.variant.kind != kind:
-            text += "\n" if kind else ""
-            kind = result.variant.kind
-            text += f"## Of the {kind}\n\n{table_head(HEADER)}"
-        text += table_row(cells_of(result, names_of(study)))
+    parts = []
+    for kind in dict.fromkeys(result.variant.kind for result in study.results):
+        alike = [result for result in study.results if result.variant.kind == kind]
+        rows = [cells_of(result, study.names) for result in alike]
+        parts.append(f"## Of the {kind}\n\n{table(HEADER, rows)}")
+    text += "\n".join(parts)
     for result in study.results:
         if result.failure:
             text += f"\n{without(result)}: {result.failure}\n"
     if study.interaction:
-        words = interaction_in_words(study.interaction, names_of(study))
+        words = interaction_in_words(study.interaction, study.names)
         text += f"\n## The two largest at once\n\n{words}\n"
     if study.left_out:
         text += f"\n{study.left_out}\n"
@@ -206,36 +195,20 @@ def markdown(study, about):
     )
 
 
-def cost_of(cost):
-    return {
-        "seconds": cost.seconds,
-        "seconds_chance": cost.seconds_chance,
-        "memory_MB": cost.memory,
-        "memory_chance_MB": cost.memory_chance,
-    }
-
-
 def contents_of(result):
+    names = "seconds seconds_chance memory_MB=memory memory_chance_MB=memory_chance"
     return {
-        "effect": result.variant.effect,
-        "instead": result.variant.instead,
-        "overrides": result.variant.overrides,
-        "kind": result.variant.kind,
-        "verdict": result.verdict,
-        "level": result.level,
-        "cells": result.cells,
-        "with": cost_of(result.with_it),
-        "without": cost_of(result.without),
+        **picked(result.variant, "effect instead overrides kind"),
+        **picked(result, "verdict level cells"),
+        "with": picked(result.with_it, names),
+        "without": picked(result.without, names),
         "decisive": result.decisive.quantity,
         "failure": result.failure,
-        "changes": {
-            change.quantity: {"change": change.change, "error": change.error}
-            for change in result.changes
-        },
+        "changes": {c.quantity: picked(c, "change error") for c in result.changes},
     }
 
 
-def csv(study):
+def table_of(study):
     lines = [
         "effect,instead,kind,verdict,level,cells,quantity,change,error,"
         "seconds_with,seconds_without,memory_with_MB,memory_without_MB"
@@ -263,17 +236,14 @@ def write_effects(study, is_finished):
     }
     if study.interaction:
         pair = study.interaction
+        results = picked(pair, "first second joint").items()
         contents["interaction"] = {
-            "first": contents_of(pair.first),
-            "second": contents_of(pair.second),
-            "joint": contents_of(pair.joint),
-            "quantity": pair.largest.quantity,
-            "interaction": pair.largest.change,
-            "error": pair.largest.error,
+            **{which: contents_of(result) for which, result in results},
+            **picked(pair.largest, "quantity interaction=change error"),
             "interact": pair.is_clear,
-            "words": interaction_in_words(pair, names_of(study)),
+            "words": interaction_in_words(pair, study.names),
         }
     make_directory(study.directory)
-    replace_file(study.directory + "effects.csv", csv(study))
+    replace_file(study.directory + "effects.csv", table_of(study))
     replace_file(study.directory + "effects.json", json_text(contents))
     replace_file(study.directory + "effects.md", markdown(study, about))

@@ -3,7 +3,7 @@
 time step k, by robust least squares. Pure functions of numbers."""
 
 import functools
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from math import exp, hypot, isfinite, log, nan, sqrt
 from typing import NamedTuple
 
@@ -20,8 +20,7 @@ INVISIBLE_SHARE = 1e-4
 SAME = 1e-6
 
 
-@dataclass
-class Misfit:
+class Misfit(NamedTuple):
     """How far a fit is from the samples that it was made from: the root mean
     square of log(fit/sample) and the median of its absolute value, which outliers
     do not move; the largest of fit/sample and sample/fit with the index of that
@@ -37,21 +36,20 @@ class Misfit:
 def misfit_of(log_ratios):
     """The misfit where log(fit/sample) of each sample is given; samples for which
     that is not finite do not count."""
-    sizes = np.abs(np.asarray(log_ratios, dtype=float))
+    sizes = np.abs(np.array(list(log_ratios), dtype=float))
     known = sizes[np.isfinite(sizes)]
     if not known.size:
         return Misfit()
     worst = int(np.argmax(np.where(np.isfinite(sizes), sizes, -1.0)))
-    return Misfit(
-        sqrt(np.mean(known**2)), upper_median(known), exp(sizes[worst]), worst, known.size
-    )
+    rms = sqrt(np.mean(known**2))
+    return Misfit(rms, upper_median(known), exp(sizes[worst]), worst, known.size)
 
 
 def upper_median(values):
     return float(np.sort(values)[len(values) // 2])
 
 
-@dataclass
+@dataclass(frozen=True)
 class TwoPowers:
     """The law y(x_1, x_2)^m = (c_1 x_1^p)^m + (c_2 x_2^q)^m with c_1, c_2 >= 0;
     m is 1, or 2 for two parts of an error that are orthogonal to each other."""
@@ -67,7 +65,7 @@ class TwoPowers:
     # Whether the samples can tell the two terms apart: otherwise each has half
     # of the sum.
     is_separable: bool = True
-    misfit: Misfit = field(default_factory=Misfit)
+    misfit: Misfit = Misfit()
 
     def first(self, x_1):
         return self.c_1 * x_1**self.p if self.c_1 > 0.0 else 0.0
@@ -116,6 +114,7 @@ class Problem:
     def __init__(self, coordinates, log_y, prior, finer):
         self.coordinates, self.log_y = coordinates, log_y
         self.prior, self.finer = prior, finer
+        self.gradient_of_prior = prior.weight * np.eye(4)[[1, 3]]
 
     def term(self, c, log_c, p):
         """One of the two terms in all samples, and d log(term) / dp."""
@@ -130,9 +129,8 @@ class Problem:
         value = value * rest ** (1.0 / m)
         slope = np.where(below, (x - (1.0 - rest) * f) / rest, x)
         # In both runs, and not in their difference.
-        shared = (f < x + SAME) & (
-            self.finer[1 - c] < self.coordinates[:, 1 - c] - SAME
-        )
+        other = self.finer[1 - c] < self.coordinates[:, 1 - c] - SAME
+        shared = (f < x + SAME) & other
         return np.where(~below & shared, 0.0, value), slope
 
     def equations(self, x):
@@ -154,30 +152,34 @@ class Problem:
 
     def of_prior(self, x):
         """The residuals of the prior."""
-        w, prior = self.prior.weight, self.prior
-        return np.array([w * (x[1] - prior.p), w * (x[3] - prior.q)])
+        return self.prior.weight * np.array([x[1] - self.prior.p, x[3] - self.prior.q])
+
+    def square_of(self, residuals):
+        """The sum of their squares with their weights."""
+        return (self.weights(residuals) * residuals**2).sum()
 
     def value(self, x):
         """The sum of squares that is to be small."""
-        residuals = self.equations(x)[0]
-        squares = self.weights(residuals) * residuals**2
-        return squares.sum() + (self.of_prior(x) ** 2).sum()
+        return self.square_of(self.equations(x)[0]) + (self.of_prior(x) ** 2).sum()
 
-    def curvature(self, x, choice):
-        """J^T W J of the unknowns that are chosen."""
+    def deviation(self, choice, x, which):
+        """Standard deviation of the unknown number which among those that are chosen,
+        for deviations of at least 1 % in the samples."""
         residuals, gradient, _ = self.equations(x)
-        w = self.prior.weight
-        rows = np.vstack([gradient, [[0, w, 0, 0], [0, 0, 0, w]]])[:, choice]
+        rows = np.vstack([gradient, self.gradient_of_prior])[:, choice]
         weights = np.append(self.weights(residuals), [1.0, 1.0])
-        return rows.T @ (weights[:, None] * rows) + 1e-12 * np.eye(rows.shape[1])
+        curvature = rows.T @ (weights[:, None] * rows) + 1e-12 * np.eye(rows.shape[1])
+        position = int(np.count_nonzero(choice[:which]))
+        variance = np.linalg.inv(curvature)[position, position]
+        square = self.square_of(residuals)
+        square /= max(1.0, len(residuals) - np.count_nonzero(choice))
+        return sqrt(max(1e-4, square) * max(0.0, variance))
 
 
 def minimize(problem, choice, start):
     """Least squares for the unknowns that are chosen, again and again with the
     weights of the last residuals."""
     x = start.copy()
-    w = problem.prior.weight
-    of_prior = np.array([[0, w, 0, 0], [0, 0, 0, w]])
 
     def place(unknowns):
         result = x.copy()
@@ -194,8 +196,8 @@ def minimize(problem, choice, start):
         def jacobian(unknowns):
             at = place(unknowns)
             inside = (at > SMALLEST) & (at < LARGEST)
-            rows = np.vstack([root[:, None] * problem.equations(at)[1], of_prior])
-            return (rows * inside)[:, choice]
+            rows = root[:, None] * problem.equations(at)[1]
+            return (np.vstack([rows, problem.gradient_of_prior]) * inside)[:, choice]
 
         found = least_squares(
             residuals, x[choice], jacobian, method="lm", xtol=1e-10, ftol=1e-12
@@ -214,33 +216,17 @@ def best_fit(problem, choice, fixed):
     exponents = (0.35, 0.5, 0.75, 1.0, 1.4, 2.0, 3.0)
     mean = problem.log_y.mean()
     starts = []
-    for share in (0.02, 0.3, 0.7, 0.98):
-        best = None
-        for p in exponents if choice[1] else (fixed[1],):
-            for q in exponents if choice[3] else (fixed[3],):
-                x = np.array([mean + log(share), p, fixed[2], q])
-                if choice[2]:
-                    x[2] = mean + log(1.0 - share)
-                value = problem.value(x)
-                if best is None or value < best[0]:
-                    best = (value, x)
-        starts.append(best)
-        if not choice[2]:
-            break
+    for share in (0.02, 0.3, 0.7, 0.98) if choice[2] else (0.02,):
+        second = mean + log(1.0 - share) if choice[2] else fixed[2]
+        grid = [
+            np.array([mean + log(share), p, second, q])
+            for p in (exponents if choice[1] else (fixed[1],))
+            for q in (exponents if choice[3] else (fixed[3],))
+        ]
+        starts.append(min(((problem.value(x), x) for x in grid), key=lambda s: s[0]))
     starts.sort(key=lambda start: start[0])
     found = [minimize(problem, choice, x) for _, x in starts[:3]]
     return min(found, key=lambda result: result[1])[0]
-
-
-def deviation(problem, choice, x, which):
-    """Standard deviation of the unknown number which, for deviations of at least
-    1 % in the samples."""
-    variance = np.linalg.inv(problem.curvature(x, choice))
-    position = int(np.count_nonzero(choice[:which]))
-    residuals = problem.equations(x)[0]
-    square = (problem.weights(residuals) * residuals**2).sum()
-    square /= max(1.0, len(residuals) - np.count_nonzero(choice))
-    return sqrt(max(1e-4, square) * max(0.0, variance[position, position]))
 
 
 def fit_two_powers(samples, prior=Prior(), smallest=0.0, finer=None):
@@ -249,79 +235,73 @@ def fit_two_powers(samples, prior=Prior(), smallest=0.0, finer=None):
     exponent that the samples do not determine to 0.3 (one standard deviation) has
     the value of the prior. With finer the terms are those of both runs subtracted;
     the result is the law of the errors themselves."""
-    key = tuple(tuple(map(float, sample)) for sample in samples)
-    return replace(fit_once(key, prior, smallest, finer))
+    return fit_once(tuple(tuple(map(float, s)) for s in samples), prior, smallest, finer)
 
 
 # Reports are written again and again while a study grows.
 @functools.lru_cache(maxsize=4096)
 def fit_once(samples, prior, smallest, finer):
-    result = TwoPowers(p=prior.p, q=prior.q)
     table = np.array(samples, dtype=float).reshape(-1, 3)
-    index = np.flatnonzero(
-        np.isfinite(table[:, 2])
-        & (table[:, 2] > smallest)
-        & (table[:, 0] > 0.0)
-        & (table[:, 1] > 0.0)
-    )
-    if not index.size:
-        return result
-    logs = np.log(table[index])
+    is_used = np.isfinite(table[:, 2]) & (table > (0.0, 0.0, smallest)).all(axis=1)
+    if not is_used.any():
+        return TwoPowers(p=prior.p, q=prior.q)
+    logs = np.log(table[is_used])
     center = logs[:, :2].mean(axis=0)
     if finer:
-        finer = finer._replace(
-            x_1=log(finer.x_1) - center[0], x_2=log(finer.x_2) - center[1]
-        )
+        x_1, x_2 = np.log(finer[:2]) - center
+        finer = finer._replace(x_1=x_1, x_2=x_2)
     problem = Problem(logs[:, :2] - center, logs[:, 2], prior, finer)
 
     s_11, s_22 = (problem.coordinates**2).sum(axis=0)
     s_12 = problem.coordinates.prod(axis=1).sum()
     varies_1, varies_2 = s_11 > SAME**2, s_22 > SAME**2
-    x = np.array([0.0, prior.p, SMALLEST[2], prior.q])
+    fixed = np.array([0.0, prior.p, SMALLEST[2], prior.q])
     are_parallel = varies_1 and varies_2 and s_12**2 >= 0.998 * s_11 * s_22
-    if are_parallel and not prior.is_one_term:
+    is_separable = not are_parallel or prior.is_one_term
+    if not is_separable:
         # One coordinate follows from the other. Half of one power each: this is
         # all that the samples say.
-        result.is_separable = False
-        result.p_is_fitted = result.q_is_fitted = True
-        x = best_fit(problem, np.array([True, True, False, False]), x)
+        x = best_fit(problem, np.array([True, True, False, False]), fixed)
         x[0] -= log(2.0)
-        x[2] = x[0]
-        x[3] = x[1] * s_11 / s_12
+        x[2], x[3] = x[0], x[1] * s_11 / s_12
+        p_is_fitted = q_is_fitted = True
     else:
         # Something that does not vary is a constant, whose share still shows
         # beside what varies; of two constants only the sum does.
         has_second = not prior.is_one_term and (varies_1 or varies_2)
         choice = np.array([True, varies_1, has_second, has_second and varies_2])
         for a in (3, 1, 2):
-            if np.count_nonzero(choice) > index.size:
+            if np.count_nonzero(choice) > len(logs):
                 choice[a] = False
-        fixed = x
         x = best_fit(problem, choice, fixed)
         # Exponents that could be anything, or want to be nonsense.
         for a in (3, 1):
             if choice[a] and (
-                deviation(problem, choice, x, a) > 0.3
-                or x[a] <= SMALLEST[a]
-                or x[a] >= LARGEST[a]
+                problem.deviation(choice, x, a) > 0.3
+                or not SMALLEST[a] < x[a] < LARGEST[a]
             ):
                 choice[a] = False
                 x = best_fit(problem, choice, fixed)
-        result.p_is_fitted, result.q_is_fitted = bool(choice[1]), bool(choice[3])
-    result.p, result.q = float(x[1]), float(x[3])
-    result.c_1 = exp(x[0] - x[1] * center[0])
-    result.c_2 = exp(x[2] - x[3] * center[1])
+        p_is_fitted, q_is_fitted = bool(choice[1]), bool(choice[3])
 
-    # Terms that no sample sees.
     residuals, _, share = problem.equations(x)
-    if share.max() < INVISIBLE_SHARE:
-        result.c_1, result.p, result.p_is_fitted = 0.0, prior.p, False
-    if share.min() > 1.0 - INVISIBLE_SHARE:
-        result.c_2, result.q, result.q_is_fitted = 0.0, prior.q, False
     log_ratios = np.full(len(table), nan)
-    log_ratios[index] = residuals
-    result.misfit = misfit_of(log_ratios)
-    return result
+    log_ratios[is_used] = residuals
+    first = {"c_1": exp(x[0] - x[1] * center[0]), "p": float(x[1])}
+    second = {"c_2": exp(x[2] - x[3] * center[1]), "q": float(x[3])}
+    # Terms that no sample sees.
+    if share.max() < INVISIBLE_SHARE:
+        first, p_is_fitted = {"p": prior.p}, False
+    if share.min() > 1.0 - INVISIBLE_SHARE:
+        second, q_is_fitted = {"q": prior.q}, False
+    return TwoPowers(
+        **first,
+        **second,
+        p_is_fitted=p_is_fitted,
+        q_is_fitted=q_is_fitted,
+        is_separable=is_separable,
+        misfit=misfit_of(log_ratios),
+    )
 
 
 # What is below is rounding.
@@ -333,34 +313,21 @@ def fit_error(samples, finer=None):
     that fits better; where nothing else is known p = q = 1 as in (5.14) and
     (5.20)."""
     total = fit_two_powers(samples, Prior(), ROUNDING, finer)
-    if (
-        not total.is_separable
-        or total.c_1 == 0.0
-        or total.c_2 == 0.0
-        or total.misfit.n_samples < 4
-    ):
+    has_two = total.is_separable and total.c_1 > 0.0 and total.c_2 > 0.0
+    if not has_two or total.misfit.n_samples < 4:
         return total
     # The same for the squares.
     squares = [(x_1, x_2, y * y) for x_1, x_2, y in samples]
     if finer:
         finer = finer._replace(m_1=finer.m_1 / 2.0, m_2=finer.m_2 / 2.0)
     root = fit_two_powers(squares, Prior(p=2.0, q=2.0), ROUNDING**2, finer)
-    found = root.misfit
-    root = replace(
-        root,
-        m=2.0,
-        p=root.p / 2.0,
-        q=root.q / 2.0,
-        c_1=sqrt(root.c_1),
-        c_2=sqrt(root.c_2),
-        misfit=replace(
-            found,
-            rms=found.rms / 2.0,
-            median=found.median / 2.0,
-            worst_factor=sqrt(found.worst_factor),
-        ),
-    )
-    return root if root.misfit.median < 0.8 * total.misfit.median - 1e-5 else total
+    rms, median, worst_factor, *which = root.misfit
+    misfit = Misfit(rms / 2.0, median / 2.0, sqrt(worst_factor), *which)
+    if not misfit.median < 0.8 * total.misfit.median - 1e-5:
+        return total
+    powers = {"p": root.p / 2.0, "q": root.q / 2.0}
+    sizes = {"c_1": sqrt(root.c_1), "c_2": sqrt(root.c_2)}
+    return replace(root, m=2.0, **sizes, **powers, misfit=misfit)
 
 
 def fit_error_parts(samples, parts_of_h, parts_of_k):
@@ -373,10 +340,8 @@ def fit_error_parts(samples, parts_of_h, parts_of_k):
     of_h = fit_two_powers(space, prior, ROUNDING)
     of_k = fit_two_powers(time, prior, ROUNDING)
     result = replace(of_h, c_2=of_k.c_1, q=of_k.p, q_is_fitted=of_k.p_is_fitted)
-    result.misfit = misfit_of(
-        [log_ratio(result(x_1, x_2), y) for x_1, x_2, y in samples]
-    )
-    return result
+    ratios = (log_ratio(result(x_1, x_2), y) for x_1, x_2, y in samples)
+    return replace(result, misfit=misfit_of(ratios))
 
 
 def log_ratio(fit, sample):
@@ -391,11 +356,9 @@ def fit_line(samples, prior_p):
     logs = np.log([sample for sample in samples if sample[1] > 0.0])
     if not len(logs):
         return TwoPowers()
-    x, y = logs[:, 0], logs[:, 1]
-    spread = ((x - x.mean()) ** 2).sum()
-    result = TwoPowers(p=prior_p, p_is_fitted=bool(spread > 1e-12))
-    if result.p_is_fitted:
-        result.p = float(((x - x.mean()) * y).sum() / spread)
-    result.c_1 = exp(y.mean() - result.p * x.mean())
-    result.misfit = misfit_of([log_ratio(result(x_1), y) for x_1, y in samples])
-    return result
+    x, y = logs.T
+    is_fitted = bool(np.ptp(x) > SAME)
+    p = float(np.polyfit(x, y, 1)[0]) if is_fitted else prior_p
+    result = TwoPowers(exp(y.mean() - p * x.mean()), p, p_is_fitted=is_fitted)
+    ratios = (log_ratio(result(x_1), y) for x_1, y in samples)
+    return replace(result, misfit=misfit_of(ratios))

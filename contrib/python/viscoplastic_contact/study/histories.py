@@ -80,8 +80,8 @@ def differences(table, terms):
     for name, size, change in found:
         # Energies are parts of one balance: beside all of it a dissipation can be
         # negligible.
-        most = largest[unit_of(name)]
-        size = most if unit_of(name) == "energy" else max(size, 1e-3 * most)
+        share = 1.0 if unit_of(name) == "energy" else 1e-3
+        size = max(size, share * largest[unit_of(name)])
         result.append(QuantityChange(name, change / size if size > 0.0 else 0.0))
     return result
 
@@ -142,15 +142,12 @@ def piecewise_linear(times, values):
 def contact_force_of(table):
     """The size of the force of unilateral contact as an expression of t, linear
     between the steps; empty without such contact."""
-    columns = [
-        table[f"contact_force_{axis}"]
-        for axis in "xyz"
-        if f"contact_force_{axis}" in table
-    ]
+    names = [f"contact_force_{axis}" for axis in "xyz"]
+    columns = [map(float, table[name]) for name in names if name in table]
     if not columns:
         return ""
     return piecewise_linear(
-        [float(t) for t in table["t"]], [hypot(*map(float, row)) for row in zip(*columns)]
+        [float(t) for t in table["t"]], [hypot(*row) for row in zip(*columns)]
     )
 
 

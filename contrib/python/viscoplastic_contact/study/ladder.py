@@ -12,18 +12,19 @@ half of the scene's), which comes before those that are compared with it; a few
 coarse runs tell whether it fits into the budget. If it does not, the study has
 fewer levels, but three at least."""
 
+import itertools
 import time
 from dataclasses import dataclass, field
 from math import isfinite, nan
 from typing import Optional
 
 from ..tables import UserError
-from .analysis import cost_of, expected_steps, fit_tolerance_runs, of_variant
+from .analysis import cost_of_run, fit_tolerance_runs, of_variant
 from .record import MethodVariant, RunKey, RunRecord
 from .report import analyze, prices_in_words, write_report
-from .runs import Interrupted
+from .runs import Failure, Interrupted
 from .scene import Scene
-from .timing import make_timing_runs, seconds_for_timing
+from .timing import make_timing_runs, seconds_for_timing, seconds_of
 from .words import seconds_in_words
 
 LADDERS = ("space", "time", "both")
@@ -67,8 +68,8 @@ class Study:
             scene["Material/Stress history"]
         ]
         self.wanted_levels = self.n_levels = int(scene.number("Study/Levels"))
-        # Runs that only tell what they cost, and cost models, by method variant.
-        self.timings, self.costs = {}, {}
+        # Runs that only tell what they cost, by method variant.
+        self.timings = {}
         # Seconds that runs have taken beyond their steps, above all to start.
         self.overheads = []
         if "tolerance" in self.strategies and not scene.has_tolerance:
@@ -87,21 +88,16 @@ class Study:
                 "only in three levels; take at least 3, or give 'Exact solution' or "
                 "'Error control/Tolerance'."
             )
-        self.check_names()
+        choices = self.strategies, self.schemes, self.histories
+        self.all_variants = [MethodVariant(*c) for c in itertools.product(*choices)]
+        # Of schemes and histories the program knows the names.
+        for variant in self.all_variants:
+            own = MethodVariant(variant.strategy, *scene.key().variant[1:])
+            if variant != own and variant.strategy == self.strategies[0]:
+                scheme, history = f"Time/Scheme={variant.scheme}", variant.history
+                entries = [scheme, f"Material/Stress history={history}"]
+                Scene(runs.program, runs.files, runs.overrides + entries)
         self.make_plan()
-
-    def check_names(self):
-        """Of schemes and histories: the program knows them."""
-        scene = self.runs.scene
-        for scheme in self.schemes:
-            for history in self.histories:
-                if (scheme, history) != scene.key().variant[1:]:
-                    entries = [
-                        f"Time/Scheme={scheme}",
-                        f"Material/Stress history={history}",
-                    ]
-                    runs = self.runs
-                    Scene(runs.program, runs.files, runs.overrides + entries)
 
     def levels_of(self, strategy, ladder):
         """The runs of a method variant in a ladder, as levels of mesh and time."""
@@ -129,13 +125,10 @@ class Study:
             planned.setdefault(key, PlannedRun(key)).ladders.add(ladder)
             return planned[key]
 
-        for strategy in self.strategies:
-            for scheme in self.schemes:
-                for history in self.histories:
-                    variant = MethodVariant(strategy, scheme, history)
-                    for ladder in LADDERS:
-                        for mesh_level, time_level in self.levels_of(strategy, ladder):
-                            add(variant, mesh_level, ladder, time_level)
+        for variant in self.all_variants:
+            for ladder in LADDERS:
+                for mesh_level, time_level in self.levels_of(variant.strategy, ladder):
+                    add(variant, mesh_level, ladder, time_level)
         if not scene.has_exact_solution:
             # A scene with a tolerance has the scheme that is the best for it.
             is_uniform, own = self.reference_strategy == "uniform", scene["Time/Scheme"]
@@ -173,14 +166,14 @@ class Study:
     def reference(self):
         """What quantities are compared with: the reference run, or the finest
         finished uniform run in its place; None if there is none."""
-        finest = None
-        for run in self.plan:
-            if run.record and run.is_reference:
-                return run.record
-            is_like_it = run.key.variant.strategy == self.reference_strategy
-            if run.record and is_like_it and "both" in run.ladders:
-                finest = run.record
-        return finest
+        finished = [run for run in self.plan if run.record]
+        for_it = [run for run in finished if run.is_reference] or [
+            run
+            for run in finished
+            if run.key.variant.strategy == self.reference_strategy
+            and "both" in run.ladders
+        ]
+        return for_it[-1].record if for_it else None
 
     def timed(self, variant):
         """The records of a method variant that tell what its runs cost: all its
@@ -223,26 +216,17 @@ class Study:
         scene, variant, records = self.runs.scene, key.variant, self.records()
         to_tolerance = variant.strategy == "tolerance"
         # Those of the same variant, or else as similar as there are.
-        known = of_variant(records, variant)
-        if not known:
-            known = [r for r in records if r.key.variant.strategy == variant.strategy]
-        if not known and not to_tolerance:
-            known = [r for r in records if r.key.variant.strategy != "tolerance"]
-        if not known:
-            return nan
-        if to_tolerance:
-            model = fit_tolerance_runs(scene, known, "estimate_total", None)
-            return model.predict(scene.tolerance(key)).seconds
-        if variant not in self.costs:
-            self.costs[variant] = cost_of(known)
-        finest = max(known, key=lambda record: record.key.mesh_level)
-        levels = key.mesh_level - finest.key.mesh_level
-        steps = expected_steps(scene, known, key)
-        return self.costs[variant].seconds(
-            finest.number("dofs") * 2.0 ** (scene.dimension * levels),
-            steps,
-            scene.n_set_ups(variant.strategy, steps, scene.planned_steps(key)),
+        known = (
+            of_variant(records, variant)
+            or [r for r in records if r.key.variant.strategy == variant.strategy]
+            or [r for r in records if r.key.variant.strategy != "tolerance"]
         )
+        if not known or (to_tolerance and known[0].key.variant.strategy != "tolerance"):
+            return nan
+        if not to_tolerance:
+            return cost_of_run(scene, known, key)[0]
+        model = fit_tolerance_runs(scene, known, "estimate_total", None)
+        return model.predict(scene.tolerance(key)).seconds
 
     def seconds_left(self):
         """What the runs that are missing will take; not a number if that of some
@@ -252,7 +236,6 @@ class Study:
     def find_finished(self):
         for run in self.plan:
             run.record = self.runs.find(run.key)
-        self.costs.clear()
 
     def make(self, run):
         """Make a run unless it takes too long."""
@@ -273,29 +256,19 @@ class Study:
         about = f", about {seconds_in_words(seconds)}" if is_known else ""
         self.console.status(f"{name}: running{about}")
         start = self.elapsed()
-        outcome = self.runs.make(run.key)
-        run.record = outcome.record
-        if run.record:
-            spent = run.record.number("seconds_total")
-            self.overheads.append(max(0.0, self.elapsed() - start - spent))
-        self.costs.clear()
-        if outcome.interruption:
-            self.stop(outcome.interruption, f"run {name}")
-        if not run.record:
-            run.skipped = f"failed: {outcome.failure}"
+        try:
+            run.record = self.runs.make(run.key, f"the study in the run {name}")
+        except Failure as failure:
+            run.skipped = f"failed: {failure}"
             self.console.say(f"{name} {run.skipped}")
             return
+        spent = run.record.number("seconds_total")
+        self.overheads.append(max(0.0, self.elapsed() - start - spent))
         self.announce(run.record)
         # The fits of a large study take as long as a small run.
         if self.elapsed() - self.last_report > 10.0:
-            self.report(False)
+            self.report()
             self.last_report = self.elapsed()
-
-    def stop(self, name, where):
-        self.report(False)
-        raise Interrupted(
-            f"{name} has ended the study in the {where}; the same command goes on."
-        )
 
     def announce(self, record):
         """Print what a finished run has given and how long the others will take."""
@@ -331,20 +304,20 @@ class Study:
             wanted = [price for price in result.prices if price.run]
             mesh_level = max((price.run.mesh_level for price in wanted), default=0)
             in_budget = [price.run.seconds for price in wanted if price.is_in_budget]
-            spent = sum(record.number("seconds_total") for record in result.records)
+            spent = seconds_of(result.records)
             seconds = seconds_for_timing(spent, max(in_budget, default=0.0))
-            found, interruption = make_timing_runs(
+            found = self.timings[result.variant] = []
+            make_timing_runs(
                 self.runs,
                 result.records,
                 max(0, mesh_level),
                 min(seconds, self.left()),
+                found,
+                f"the study in the run for timing of {result.variant.name}",
                 self.console,
             )
             for record in found:
                 self.announce(record)
-            self.timings[result.variant] = found
-            if interruption:
-                self.stop(interruption, f"run for timing of {result.variant.name}")
 
     def can_take_fewer_levels(self):
         return self.reference_strategy != "tolerance" and self.n_levels > FEWEST_LEVELS
@@ -425,16 +398,26 @@ class Study:
         """Make what is missing. Raises Interrupted, and UserError if not a single run
         could be computed."""
         self.runs.lock_directory()
-        scene = self.runs.scene
-        self.console.say(f"Study of {scene.file}: {len(self.plan)} runs")
-        if not scene.has_exact_solution:
+        self.console.say(f"Study of {self.runs.scene.file}: {len(self.plan)} runs")
+        try:
+            self.make_all()
+        except Interrupted:
+            self.report()
+            raise
+        prices = prices_in_words(write_report(self, True), self.budget)
+        self.console.say(
+            f"{prices}Results in {self.directory}\n"
+            f"Pictures: contrib/plot {self.directory}"
+        )
+
+    def make_all(self):
+        if not self.runs.scene.has_exact_solution:
             self.make_reference()
         self.find_finished()
         if self.records():
             self.console.say(f"Finished already: {len(self.records())}")
-        for run in self.plan:
-            if run.is_missing:
-                self.make(run)
+        for run in self.missing():
+            self.make(run)
         if not self.records():
             skipped = [run for run in self.plan if run.skipped]
             reason = "'Study/Budget' leaves no time."
@@ -443,13 +426,8 @@ class Study:
                 reason = f"the run {self.runs.name(last.key)} {last.skipped}"
             raise UserError(f"No run of the study could be computed: {reason}")
         self.make_timings()
-        self.report(True)
-        self.console.say(
-            f"{prices_in_words(self)}Results in {self.directory}\n"
-            f"Pictures: contrib/plot {self.directory}"
-        )
 
-    def report(self, is_finished):
-        """Write the files, which say whether the study is finished."""
+    def report(self):
+        """Write the files, which say that the study is not finished."""
         if self.records():
-            write_report(self, is_finished)
+            write_report(self, False)

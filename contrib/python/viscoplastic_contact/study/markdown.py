@@ -6,11 +6,10 @@ from math import exp, isfinite, log, nan
 from pathlib import Path
 
 from .analysis import MEASURES, error_of, extrapolate
-from .price import next_refinement, price_in_words
+from .cost import DIRECT, SOLVERS, choose_solver
+from .price import price_in_words
 from .record import FIELD_ERRORS
-from .solvers import DIRECT, SOLVERS, choose_solver
-from .tolerance import exponents_in_words, tolerance_price_in_words
-from .words import digits, number_or_dash, seconds_in_words, table_head, table_row
+from .words import digits, number_or_dash, seconds_in_words, table
 
 
 def markdown(study, results, about, is_finished):
@@ -37,26 +36,28 @@ def markdown(study, results, about, is_finished):
         )
     for result in results:
         text += f"\n## {result.variant.name}\n\n{runs_table(study, result)}\n"
-        if result.tolerance_model:
-            text += tolerance_results(study, result)
-        elif result.variant.strategy != "tolerance":
+        if result.is_to_tolerance:
+            text += tolerance_results(study, result) if result.model else ""
+        else:
             text += "Observed orders between neighbors:\n\n"
             text += f"{orders_table(study, result)}\n"
-        if result.model:
-            text += f"{fits_in_words(study, result)}\n### Price list\n\n"
-            text += prices_table(study, result)
-        elif not result.tolerance_model:
+        if not result.model:
             text += "No price list: the error is known of fewer than three runs.\n"
+            continue
+        if not result.is_to_tolerance:
+            text += f"{fits_in_words(study, result)}\n"
+        text += f"### Price list\n\n{prices_table(study, result)}"
+        if not result.is_to_tolerance:
+            text += f"{result.model.next_refinement()}\n"
     text += f"\n## Reference\n\n{reference_in_words(study)}\n## Left out\n\n"
     skipped = "".join(
         f"- `{study.runs.name(run.key)}`: {run.skipped}.\n"
         for run in study.plan
         if run.skipped
     )
-    fewer = study.levels_in_words()
+    fewer, directory = study.levels_in_words(), study.directory
     if fewer:
         skipped = fewer + ("\n\n" + skipped if skipped else "\n")
-    directory = study.runs.directory
     text += (skipped or "Nothing.\n") + f"\n## Pictures\n\n    contrib/plot {directory}\n"
     for picture in sorted(Path(directory).glob("*.png")):
         text += f"\n![{picture.stem}]({picture.name})\n"
@@ -66,13 +67,11 @@ def markdown(study, results, about, is_finished):
 def shown_measures(study):
     """Errors to show: those of the fields or estimates that are known, or else
     quantities."""
+    records, reference = study.records(), study.reference()
     result = [
         measure
         for measure in (*FIELD_ERRORS, "estimate_total", "estimate_quantity")
-        if any(
-            isfinite(error_of(record, measure, study.reference()))
-            for record in study.records()
-        )
+        if any(isfinite(error_of(record, measure, reference)) for record in records)
     ]
     if not result or not study.runs.scene.has_exact_solution:
         result.append("quantities")
@@ -80,29 +79,37 @@ def shown_measures(study):
 
 
 def runs_table(study, result):
-    columns = {"h": "h", "k": "k"}
-    if result.variant.strategy == "tolerance":
-        columns = {"tolerance": "tolerance"}
+    columns = ["h", "k"]
+    if result.is_to_tolerance:
+        columns = ["tolerance"]
     elif study.runs.scene.has_step_control:
-        columns = {"h": "h", "step_tolerance": "TOL", "k": "k"}
-    columns |= {
-        "cells": "cells",
-        "dofs": "unknowns",
-        "steps": "steps",
-        "seconds_total": "seconds",
-        "peak_memory_MB": "MB",
-    }
-    more = shown_measures(study) + [
-        column
-        for column in ("effectivity", "effectivity_recovery")
-        if isfinite(result.records[0].number(column))
-    ]
-    columns |= {name: name for name in more}
-    text = table_head(["run", *columns.values()])
-    for record in result.records:
-        errors = (error_of(record, column, study.reference()) for column in columns)
-        text += table_row([f"`{record.name}`", *map(number_or_dash, errors)])
-    return text
+        columns = ["h", "step_tolerance", "k"]
+    columns += ["cells", "dofs", "steps", "seconds_total", "peak_memory_MB"]
+    columns += shown_measures(study)
+    for name in ("effectivity", "effectivity_recovery"):
+        columns += [name] if isfinite(result.records[0].number(name)) else []
+    return table(
+        ["run", *(SHORT.get(name, name) for name in columns)],
+        (
+            [
+                f"`{record.name}`",
+                *(
+                    number_or_dash(error_of(record, column, study.reference()))
+                    for column in columns
+                ),
+            ]
+            for record in result.records
+        ),
+    )
+
+
+# Columns of study.csv by shorter names.
+SHORT = {
+    "step_tolerance": "TOL",
+    "dofs": "unknowns",
+    "seconds_total": "seconds",
+    "peak_memory_MB": "MB",
+}
 
 
 def runs_of(study, variant, ladder):
@@ -114,46 +121,45 @@ def runs_of(study, variant, ladder):
     ]
 
 
-def ratio_of_logs(numerator, denominator):
-    """log(numerator)/log(denominator); not a number where that is none."""
-    if not (numerator > 0.0 and isfinite(numerator)) or not denominator > 0.0:
+def order(one, two, refinement):
+    """log(one/two)/log(refinement); not a number where that is none."""
+    quotient = one / two if two else nan
+    if not (quotient > 0.0 and isfinite(quotient)) or not refinement > 0.0:
         return nan
-    return log(numerator) / log(denominator) if denominator != 1.0 else nan
-
-
-def quotient(a, b):
-    return a / b if b else nan
+    return log(quotient) / log(refinement) if refinement != 1.0 else nan
 
 
 def orders_table(study, result):
     """Orders between neighbors of each ladder."""
-    measures, reference = shown_measures(study), study.reference()
-    text = table_head(["ladder", "from", "to", *measures])
+    measures, rows = shown_measures(study), []
+
+    def errors_of(run):
+        return [error_of(run, measure, study.reference()) for measure in measures]
+
     for ladder in ("space", "time", "both"):
         runs = runs_of(study, result.variant, ladder)
         for one, two in zip(runs, runs[1:]):
             halving = one.number("h") / two.number("h")
             if ladder == "time":
                 halving = one.step_measure / two.step_measure
-            errors = [
-                [error_of(run, measure, reference) for run in (one, two)]
-                for measure in measures
-            ]
-            orders = [ratio_of_logs(quotient(*pair), halving) for pair in errors]
+            pairs = zip(errors_of(one), errors_of(two))
+            orders = [order(*pair, halving) for pair in pairs]
             if any(map(isfinite, orders)):
                 names = [ladder, f"`{one.name}`", f"`{two.name}`"]
-                text += table_row([*names, *map(number_or_dash, orders)])
-    return text
+                rows.append([*names, *map(number_or_dash, orders)])
+    return table(["ladder", "from", "to", *measures], rows)
 
 
-def fits_in_words(study, result):
-    error, cost, steps = result.model.error, result.model.cost, result.model.chosen_steps
-    # What stands for the time steps in the law.
-    k = "TOL" if steps else "k"
-    of_h, of_k = (
-        f"{digits(error.c_1)} h^{digits(error.p)}",
-        f"{digits(error.c_2)} {k}^{digits(error.q)}",
-    )
+def missed(misfit, words=" (root mean square)", name=""):
+    """By which factors a fit misses the runs: their mean and the worst."""
+    return f"{digits(exp(misfit.rms))}{words} and {digits(misfit.worst_factor)}{name}"
+
+
+def error_in_words(result, k):
+    """The law of the errors, where k stands for the time steps."""
+    error, records = result.model.error, result.records
+    of_h = f"{digits(error.c_1)} h^{digits(error.p)}"
+    of_k = f"{digits(error.c_2)} {k}^{digits(error.q)}"
     text = f"Fit to the {MEASURES[result.measure]}, relative:\n\n    error = "
     if error.m == 1.0:
         text += f"{of_h} + {of_k}\n\n"
@@ -167,36 +173,38 @@ def fits_in_words(study, result):
             f"The runs refine h and {k} together, so that their parts cannot be told "
             "apart; half of the error is given to each. "
         )
-    for is_fitted, name in (
-        (error.p_is_fitted, "p, that of h,"),
-        (error.q_is_fitted, f"q, that of {k},"),
-    ):
+    exponents = {"p, that of h,": error.p_is_fitted, f"q, that of {k},": error.q_is_fitted}
+    for name, is_fitted in exponents.items():
         if not is_fitted:
             text += (
                 f"The exponent {name} does not show in these runs and is the "
                 "theoretical 1. "
             )
-    if "is_difference" in result.records[0].numbers and result.measure in FIELD_ERRORS:
+    if "is_difference" in records[0].numbers and result.measure in FIELD_ERRORS:
         text += (
             "This is the law of the errors themselves; what was measured are differences "
             "to the reference, whose own error the fit subtracts. "
         )
-    worst, finest = result.records[error.misfit.worst_sample], result.records[-1]
+    worst, finest = records[error.misfit.worst_sample], records[-1]
     of_mesh = error.first(finest.number("h"))
-    share = quotient(of_mesh, of_mesh + error.second(finest.step_measure))
-    text += (
+    total = of_mesh + error.second(finest.step_measure)
+    share = of_mesh / total if total else nan
+    return text + (
         f"The fit misses {error.misfit.n_samples} runs by a factor of "
-        f"{digits(exp(error.misfit.rms))} (root mean square) and "
-        f"{digits(error.misfit.worst_factor)} at worst (`{worst.name}`).\n"
+        f"{missed(error.misfit)} at worst (`{worst.name}`).\n"
         f"At the finest run `{finest.name}` the mesh has {100.0 * share:.0f} % of the "
         "sum of both parts, the steps have the rest.\n\n"
     )
+
+
+def fits_in_words(study, result):
+    cost, steps = result.model.cost, result.model.chosen_steps
+    text = error_in_words(result, "TOL" if steps else "k")
     if steps:
         text += (
             f"The number of steps to their tolerance:\n\n    steps = {digits(steps.c_1)} "
             f"TOL^-{digits(steps.p)} + {digits(steps.c_2)}\n\nwhich misses by a factor "
-            f"of {digits(exp(steps.misfit.rms))} and {digits(steps.misfit.worst_factor)} "
-            "at worst.\n\n"
+            f"of {missed(steps.misfit, '')} at worst.\n\n"
         )
 
     def power(fit):
@@ -215,13 +223,11 @@ def fits_in_words(study, result):
     timed = study.timed(result.variant)
     text += (
         f"The seconds miss {cost.misfit.n_samples} runs by a factor of "
-        f"{digits(exp(cost.misfit.rms))} (root mean square) and "
-        f"{digits(cost.misfit.worst_factor)} at worst "
+        f"{missed(cost.misfit)} at worst "
         f"(`{timed[cost.misfit.worst_sample].name}`), the memory by "
         f"{digits(exp(cost.memory_misfit.rms))}. One power alone, seconds = "
         f"{digits(cost.simple.c_1)} dofs^{digits(cost.simple.p)} steps, misses by "
-        f"{digits(exp(cost.simple.misfit.rms))} and "
-        f"{digits(cost.simple.misfit.worst_factor)} at worst.\n"
+        f"{missed(cost.simple.misfit, '')} at worst.\n"
     )
     listed = ", ".join(
         f"`{record.name}` ({digits(record.number('dofs'))} unknowns, "
@@ -234,57 +240,49 @@ def fits_in_words(study, result):
 
 
 def prices_table(study, result):
-    text = table_head(
-        [
-            *("error", "mesh level", "h", "steps"),
-            "TOL" if result.model.chosen_steps else "k",
-            *("unknowns", "solver", "seconds", "MB", "half the error costs"),
-        ]
+    def row(price):
+        run, far = price.run, " (far)" if price.is_far else ""
+        if result.is_to_tolerance:
+            size = [digits(run.tolerance) + far, *map(digits, (run.cells, run.dofs))]
+            size.append(digits(run.steps))
+        else:
+            size = [f"{run.mesh_level}{far}", digits(run.h), run.steps]
+            size += [digits(run.k), digits(run.dofs), run.solver]
+        cost = digits(run.seconds, 2), digits(run.memory, 2)
+        return [digits(price.error), *size, *cost, f"{digits(price.halving, 2)} times"]
+
+    if result.is_to_tolerance:
+        head = "error,tolerance,cells,unknowns,steps"
+    else:
+        k = "TOL" if result.model.chosen_steps else "k"
+        head = f"error,mesh level,h,steps,{k},unknowns,solver"
+    text = table(
+        f"{head},seconds,MB,half the error costs",
+        [row(price) for price in result.prices if price.is_in_budget],
     )
-    beyond = ""
-    for price in result.prices:
-        if not price.is_in_budget:
-            beyond += f"- {price_in_words(result.model, price, study.budget)}\n"
-            continue
-        run = price.run
-        text += table_row(
-            [
-                digits(price.error),
-                f"{run.mesh_level}{' (far)' if price.is_far else ''}",
-                digits(run.h),
-                run.steps,
-                digits(run.k),
-                digits(run.dofs),
-                run.solver,
-                digits(run.seconds, 2),
-                digits(run.memory, 2),
-                f"{digits(price.halving, 2)} times",
-            ]
-        )
-    text += "\n" + (beyond + "\n" if beyond else "")
-    return text + next_refinement(result.model) + "\n"
+    beyond = "".join(
+        f"- {price_in_words(result.model, price, study.budget)}\n"
+        for price in result.prices
+        if not price.is_in_budget
+    )
+    return f"{text}\n{beyond}" + ("\n" if beyond and not result.is_to_tolerance else "")
 
 
 def tolerance_results(study, result):
-    """On runs to a tolerance: exponents, fits, prices."""
-    text = "Observed exponents against 1/error between neighbors:\n\n"
-    text += table_head(["from", "to", "seconds", "cells", "steps"])
+    """On runs to a tolerance: exponents and fits."""
     records, reference, measure = result.records, study.reference(), result.measure
+    rows, model = [], result.model
     for one, two in zip(records, records[1:]):
-        of_error = quotient(
-            error_of(one, measure, reference), error_of(two, measure, reference)
-        )
-        exponents = [
-            ratio_of_logs(quotient(two.number(column), one.number(column)), of_error)
-            for column in ("seconds_total", "cells", "steps")
-        ]
-        if isfinite(of_error) and of_error > 0.0:
-            text += table_row(
-                [f"`{one.name}`", f"`{two.name}`", *map(number_or_dash, exponents)]
+        old, new = (error_of(record, measure, reference) for record in (one, two))
+        if new and isfinite(old / new) and old / new > 0.0:
+            exponents = (
+                order(two.number(column), one.number(column), old / new)
+                for column in ("seconds_total", "cells", "steps")
             )
-
-    model = result.tolerance_model
-    text += (
+            names = (f"`{record.name}`" for record in (one, two))
+            rows.append([*names, *map(number_or_dash, exponents)])
+    text = "Observed exponents against 1/error between neighbors:\n\n"
+    text += table("from,to,seconds,cells,steps", rows) + (
         f"\nFits to the {MEASURES[measure]}, relative, and to what the runs cost:\n\n"
         f"    error   = {digits(model.error.c_1)} tolerance^{digits(model.error.p)}\n"
     )
@@ -292,47 +290,21 @@ def tolerance_results(study, result):
         fit = getattr(model, name)
         text += f"    {name:7} = {digits(fit.c_1)} tolerance^-{digits(fit.p)}"
         text += f" + {digits(fit.c_2)}\n" if fit.c_2 > 0.0 else "\n"
-    text += f"\n{exponents_in_words(model)}"
+    text += f"\n{model.exponents_in_words()}"
     if not model.error.p_is_fitted:
         text += (
             " The exponent of the error does not show in these runs and is taken for 1."
         )
     if not model.seconds.p_is_fitted:
         text += " That of the seconds does not show either and is the theoretical one."
-
-    def missed(misfit):
-        return (
-            f"{digits(exp(misfit.rms))} and {digits(misfit.worst_factor)} "
-            f"(`{records[misfit.worst_sample].name}`)"
-        )
-
-    text += (
+    of_error, of_seconds = (
+        missed(misfit, "", f" (`{records[misfit.worst_sample].name}`)")
+        for misfit in (model.error.misfit, model.seconds.misfit)
+    )
+    return text + (
         " The fits miss the runs by factors (root mean square and worst) of "
-        f"{missed(model.error.misfit)} in the error and {missed(model.seconds.misfit)} "
-        "in the seconds.\n\n### Price list\n\n"
+        f"{of_error} in the error and {of_seconds} in the seconds.\n\n"
     )
-    text += table_head(
-        "error,tolerance,cells,unknowns,steps,seconds,MB,half the error costs".split(",")
-    )
-    beyond = ""
-    for price in result.tolerance_prices:
-        if not price.is_in_budget:
-            beyond += f"- {tolerance_price_in_words(model, price, study.budget)}\n"
-            continue
-        run = price.run
-        text += table_row(
-            [
-                digits(price.error),
-                digits(run.tolerance) + (" (far)" if price.is_far else ""),
-                digits(run.cells),
-                digits(run.dofs),
-                digits(run.steps),
-                digits(run.seconds, 2),
-                digits(run.memory, 2),
-                f"{digits(price.halving, 2)} times",
-            ]
-        )
-    return f"{text}\n{beyond}"
 
 
 def reference_in_words(study):
@@ -374,11 +346,9 @@ def reference_in_words(study):
         "\nRichardson check of the quantities at the end, in the runs "
         f"{names[0]}, {names[1]} and {names[2]}:\n\n"
     )
-    text += table_head(
-        "quantity,values,order,extrapolated,error of the last,as a reference".split(",")
-    )
-    for r in extrapolate(diagonal):
-        text += table_row(
+    return text + table(
+        "quantity,values,order,extrapolated,error of the last,as a reference",
+        (
             [
                 r.quantity,
                 ", ".join(digits(value, 5) for value in r.values),
@@ -387,5 +357,6 @@ def reference_in_words(study):
                 number_or_dash(r.error, 2),
                 "good" if r.is_trustworthy else "not to be trusted",
             ]
-        )
-    return text
+            for r in extrapolate(diagonal)
+        ),
+    )

@@ -3,37 +3,26 @@
 short runs are those of a study of the scene, so that finished ones are used
 again."""
 
-from dataclasses import dataclass, field
+import re
+from dataclasses import dataclass
 from math import isfinite
 from pathlib import Path
-from typing import Optional
 
-from ..program import RunError, sentence
+from ..scene import set_options
 from ..tables import UserError
 from .analysis import (
     MEASURES,
     best_measure,
-    cost_of,
+    cost_of_run,
     error_of,
-    expected_steps,
     fit_tolerance_runs,
     fit_work_precision,
 )
-from .phases import n_steps
-from .price import (
-    Price,
-    WorkPrecisionModel,
-    cheapest,
-    list_prices,
-    next_refinement,
-    price_in_words,
-)
-from .price_report import directory_of, write_price
+from .price import list_prices, price_in_words
 from .record import RunKey
-from .runs import Interrupted, launch, set_options
-from .scene import LARGEST_TOLERANCE
-from .timing import affordable_memory, make_timing_runs, seconds_for_timing
-from .tolerance import exponents_in_words, price_of, tolerance_price_in_words
+from .runs import Failure, Interrupted, make_directory, replace_file
+from .scene import LARGEST_TOLERANCE, n_steps
+from .timing import is_affordable, make_timing_runs, seconds_for_timing, seconds_of
 from .words import digits, seconds_in_words
 
 # Meshes with so many cells are small enough to be pilots themselves.
@@ -62,19 +51,14 @@ class PilotFailure(UserError):
 
 def pilot_run(runs, key, console):
     """The record of a run, which is computed unless it is finished already."""
-    record = runs.find(key)
+    record, name = runs.find(key), runs.name(key)
     if record:
         return record
-    console.status(f"Pilot run {runs.name(key)}")
-    outcome = runs.make(key)
-    if outcome.interruption:
-        raise Interrupted(
-            f"{outcome.interruption} has ended the pilot run {runs.name(key)}; the same "
-            "command goes on."
-        )
-    if not outcome.record:
-        raise PilotFailure(outcome.failure)
-    return outcome.record
+    console.status(f"Pilot run {name}")
+    try:
+        return runs.make(key, f"the pilot run {name}")
+    except Failure as failure:
+        raise PilotFailure(failure) from None
 
 
 def runs_in_words(records, measure):
@@ -93,20 +77,27 @@ def runs_in_words(records, measure):
     return text
 
 
-def seconds_of(records):
-    return sum(record.number("seconds_total") for record in records)
+def say_prices(console, model, measure, records, eps, budget):
+    """Of twice, once and half of the error; returns the one between."""
+    console.say(
+        f"Prices by the {MEASURES[measure]}, from pilots of "
+        f"{seconds_in_words(seconds_of(records))}:"
+    )
+    prices = list_prices(model, [2.0 * eps, eps, 0.5 * eps], budget)
+    for price in prices:
+        console.say(f"  {price_in_words(model, price, budget)}")
+    return prices[1]
+
+
+def check_budget(model, price, budget):
+    if not price.is_in_budget:
+        raise UserError(
+            f"{price_in_words(model, price, budget)} Raise 'Study/Budget' or take a "
+            "larger error."
+        )
 
 
 # With given meshes and steps
-
-
-@dataclass
-class UniformPrice:
-    """What an error costs with given meshes and steps."""
-
-    measure: str
-    model: WorkPrecisionModel
-    price: Price
 
 
 def finest_time_level(scene, must_save):
@@ -128,12 +119,9 @@ def finest_time_level(scene, must_save):
 def make_pilots(runs, finest, has_coarser, console):
     """Pilots on two mesh levels, the finer one of which is that of the finest, or on
     that alone; with steps as long as there, and twice as long."""
+    variant, mesh_level, time_level, _ = finest
     return [
-        pilot_run(
-            runs,
-            RunKey(finest.variant, finest.mesh_level + m, finest.time_level + t),
-            console,
-        )
+        pilot_run(runs, RunKey(variant, mesh_level + m, time_level + t), console)
         for m in ((-1, 0) if has_coarser else (0,))
         for t in (-1, 0)
     ]
@@ -143,15 +131,9 @@ def finer_pilot(runs, pilots, seconds, console):
     """Pilots on one mesh do not tell what the mesh does to the error: one more on a
     finer mesh, with the longest steps of these, if it takes no more than so many
     seconds. Without it, or where it fails, the law is a theoretical one."""
-    scene, cost, key = runs.scene, cost_of(pilots), pilots[0].key
-    key = key._replace(mesh_level=key.mesh_level + 1)
-    steps = expected_steps(scene, pilots, key)
-    n_set_ups = scene.n_set_ups(key.variant.strategy, steps, scene.planned_steps(key))
-    dofs = 2.0**scene.dimension * pilots[0].number("dofs")
-    if not runs.find(key) and (
-        cost.seconds(dofs, steps, n_set_ups) > seconds
-        or cost.memory(dofs, steps, n_set_ups) > affordable_memory()
-    ):
+    key = pilots[0].key._replace(mesh_level=pilots[0].key.mesh_level + 1)
+    cost = cost_of_run(runs.scene, pilots, key)
+    if not runs.find(key) and not is_affordable(cost, seconds):
         return []
     try:
         return [pilot_run(runs, key, console)]
@@ -166,20 +148,12 @@ def stagnation(pilots, measure, eps):
     parts = [("h and k", "error", lambda r: error_of(r, measure, None), 0.0)]
     if measure == "estimate_total":
         # Each part falls by itself, and the smaller one may hide behind the other.
-        parts += [
-            (
-                "h",
-                "part of the mesh in the error",
-                lambda r: r.number("estimate_space") + r.number("estimate_initial"),
-                0.5,
-            ),
-            (
-                "k",
-                "part of the steps in the error",
-                lambda r: r.number("estimate_time"),
-                0.5,
-            ),
-        ]
+        for h, part, names in (
+            ("h", "mesh", ("estimate_space", "estimate_initial")),
+            ("k", "steps", ("estimate_time",)),
+        ):
+            part = f"part of the {part} in the error"
+            parts.append((h, part, lambda r, names=names: sum(map(r.number, names)), 0.5))
     finest = min(pilots, key=lambda r: (r.number("h"), r.step_measure))
     if error_of(finest, measure, None) <= eps:
         return ""
@@ -203,21 +177,13 @@ def stagnation(pilots, measure, eps):
 def refine_pilots(runs, pilots, measure, eps, n_left, console):
     """Pilots on the next finer meshes, so many times at most, where those that there are
     stagnate. Raises UserError where they still do."""
-    scene, who = runs.scene, "The pilots stagnate"
+    who = "The pilots stagnate"
     while why := stagnation(pilots, measure, eps):
         finest = max(pilots, key=lambda r: (r.key.mesh_level, r.key.time_level))
         key = finest.key._replace(mesh_level=finest.key.mesh_level + 1)
-        steps = expected_steps(scene, pilots, key)
-        strategy = key.variant.strategy
-        n_set_ups = scene.n_set_ups(strategy, steps, scene.planned_steps(key))
-        dofs = 2.0**scene.dimension * finest.number("dofs")
-        cost = cost_of(pilots)
+        cost = cost_of_run(runs.scene, pilots, key)
         affordable = seconds_for_timing(FINER_SHARE * seconds_of(pilots), 0.0)
-        if (
-            n_left == 0
-            or cost.seconds(dofs, steps, n_set_ups) > affordable
-            or cost.memory(dofs, steps, n_set_ups) > affordable_memory()
-        ):
+        if n_left == 0 or not is_affordable(cost, affordable):
             raise UserError(
                 f"The price cannot be predicted: {why}, which says nothing of finer "
                 f"runs. An error of {digits(eps)} takes more than the "
@@ -273,7 +239,7 @@ def price_with_given_meshes(runs, eps, seconds, console):
         pilots = refine_pilots(runs, pilots, measure, eps, N_FINER, console)
     model = fit(pilots)
     if not has_two_meshes:
-        wanted = cheapest(model, eps)
+        wanted = model.cheapest(eps)
         if wanted:
             pilots += finer_pilot(runs, pilots, seconds_left(wanted.seconds), console)
             refine_pilots(runs, pilots, measure, eps, 0, console)
@@ -286,25 +252,14 @@ def price_with_given_meshes(runs, eps, seconds, console):
         )
     # A run on a mesh that is much finer than those of the pilots may have another
     # solver.
-    timings, wanted = [], cheapest(model, eps)
+    timings, wanted = [], model.cheapest(eps)
     if wanted:
-        timings, interruption = make_timing_runs(
-            runs, pilots, wanted.mesh_level, seconds_left(wanted.seconds), console
-        )
-        if interruption:
-            raise Interrupted(
-                f"{interruption} has ended the timing runs; the same command goes on."
-            )
+        left = seconds_left(wanted.seconds)
+        of_runs = runs, pilots, wanted.mesh_level, left, timings, "the timing runs"
+        make_timing_runs(*of_runs, console)
     console.say(runs_in_words(timings, ""), end="")
-    model = fit(pilots + timings)
-    console.say(
-        f"Prices by the {MEASURES[measure]}, from pilots of "
-        f"{seconds_in_words(seconds_of(pilots + timings))}:"
-    )
-    prices = list_prices(model, [2.0 * eps, eps, 0.5 * eps], budget)
-    for price in prices:
-        console.say(f"  {price_in_words(model, price, budget)}")
-    return UniformPrice(measure, model, prices[1])
+    model, known = fit(pilots + timings), pilots + timings
+    return measure, model, say_prices(console, model, measure, known, eps, budget)
 
 
 # To a tolerance
@@ -343,20 +298,11 @@ def price_to_tolerance(runs, eps, console):
             )
         level += 1
     console.say(
-        f"Pilot runs to larger tolerances:\n{runs_in_words(pilots, measure)}"
-        f"Prices by the {MEASURES[measure]}, from pilots of "
-        f"{seconds_in_words(seconds_of(pilots))}:"
+        "Pilot runs to larger tolerances:\n" + runs_in_words(pilots, measure), end=""
     )
-    for error in (2.0 * eps, eps, 0.5 * eps):
-        price = price_of(model, error, budget)
-        console.say(f"  {tolerance_price_in_words(model, price, budget)}")
-    console.say(exponents_in_words(model))
-    price = price_of(model, eps, budget)
-    if not price.is_in_budget:
-        raise UserError(
-            f"{tolerance_price_in_words(model, price, budget)} Raise 'Study/Budget' or "
-            "take a larger error."
-        )
+    price = say_prices(console, model, measure, pilots, eps, budget)
+    console.say(model.exponents_in_words())
+    check_budget(model, price, budget)
     return measure, price
 
 
@@ -365,42 +311,32 @@ def price_to_tolerance(runs, eps, console):
 
 @dataclass
 class ChosenRun:
-    """The run that has been chosen, with what is set for it, and what it is expected
-    to give: error, seconds, memory, and cells and steps of runs that choose them."""
+    """The run that has been chosen, with what is set for it, by a measure of the
+    error, and what it is expected to give and to cost."""
 
     key: RunKey
     assignments: list
     measure: str
-    expected: dict = field(default_factory=dict)
-    price: Optional[Price] = None
+    expected: object
 
 
 def choose_mesh_and_steps(runs, eps, console):
-    budget = runs.scene.budget
-    found = price_with_given_meshes(runs, eps, budget, console)
-    console.say(next_refinement(found.model))
-    if not found.price.is_in_budget:
-        raise UserError(
-            f"{price_in_words(found.model, found.price, budget)} Raise 'Study/Budget' or "
-            "take a larger error."
-        )
-    run = found.price.run
-    key = runs.scene.key()._replace(mesh_level=run.mesh_level)
-    return ChosenRun(
-        key,
-        runs.scene.discretization(key, run.phases, run.k),
-        found.measure,
-        {name: getattr(run, name) for name in ("error", "seconds", "memory", "steps")},
-    )
+    scene, budget = runs.scene, runs.scene.budget
+    measure, model, price = price_with_given_meshes(runs, eps, budget, console)
+    console.say(model.next_refinement())
+    check_budget(model, price, budget)
+    run = price.run
+    key = scene.key()._replace(mesh_level=run.mesh_level)
+    return ChosenRun(key, scene.discretization(key, run.phases, run.k), measure, run)
 
 
 def choose_tolerance(runs, eps, console):
     """Beside its price, that of runs with given meshes and steps is said."""
     measure, price = price_to_tolerance(runs, eps, console)
-    run, scene = price.run, runs.scene
+    run, key = price.run, runs.scene.key()
     console.say("\nFor comparison, runs with one uniform mesh and equal steps.")
     try:
-        other = price_with_given_meshes(runs, eps, run.seconds, console).price.run
+        other = price_with_given_meshes(runs, eps, run.seconds, console)[2].run
         text = f"With one uniform mesh and equal steps, the error {digits(eps)} "
         if other:
             text += (
@@ -415,41 +351,69 @@ def choose_tolerance(runs, eps, console):
         raise
     except UserError as error:
         console.say(f"Not priced: {error}\n")
-    key = scene.key()
     return ChosenRun(
         key._replace(variant=key.variant._replace(strategy="tolerance")),
         [f"Error control/Tolerance={digits(run.tolerance, 4)}"],
         measure,
-        {
-            name: getattr(run, name)
-            for name in ("error", "seconds", "memory", "cells", "steps")
-        },
+        run,
     )
 
 
-def compare(predicted, actual):
-    """"predicted / actual", and the factor between."""
-
-    def number(value):
-        return digits(value) if isfinite(value) else "unknown"
-
-    text = f"{number(predicted)} predicted, {number(actual)} found"
-    if actual > 0.0 and isfinite(actual):
-        text += f" (factor {digits(predicted / actual, 2)})"
+def comparison(scene, chosen, result):
+    """What was predicted and what has been found."""
+    columns = {
+        "error": error_of(result, chosen.measure, None),
+        "seconds": result.number("seconds_total"),
+        "memory": result.number("peak_memory_MB"),
+    }
+    for name, is_chosen in (
+        ("cells", scene.has_tolerance),
+        ("steps", scene.has_tolerance or scene.has_step_control),
+    ):
+        if is_chosen:
+            columns[name] = result.number(name)
+    text = "\nThe prediction:\n"
+    for name, found in columns.items():
+        expected = getattr(chosen.expected, name)
+        words = [digits(v) if isfinite(v) else "unknown" for v in (expected, found)]
+        text += f"  {name:7}  {words[0]} predicted, {words[1]} found"
+        if found > 0.0 and isfinite(found):
+            text += f" (factor {digits(expected / found, 2)})"
+        text += {"seconds": ", without field output", "memory": " MB"}.get(name, "") + "\n"
     return text
+
+
+def as_markdown(said):
+    """Indented lines are points of a list, or options; others are paragraphs."""
+    lines = []
+    for line in said.splitlines():
+        mark = re.match(r"  (--set )?", line)
+        if not mark:
+            lines += ["", line]
+        elif mark[1]:
+            lines += [] if lines[-1].startswith("    ") else [""]
+            lines.append(f"    {line[2:]}")
+        else:
+            lines += [] if lines[-1].startswith("- ") else [""]
+            lines.append(f"- {' '.join(line.split())}")
+    return re.sub(r"\n{3,}", "\n\n", "\n".join(lines)).strip() + "\n"
 
 
 def run_at_price(runs, eps, console, only_price=False, options=()):
     """A run with the mesh and the steps that reach the error eps at the lowest cost,
     as short runs predict it; says both before and afterwards what it costs and gives,
     which price.md has, too. With only_price it only says what it would cost. Options of
-    the program go to the run. Raises Interrupted, and UserError."""
-    scene = runs.scene
-
-    directory = directory_of(scene)
+    the program go to the run. Returns the directory of the results, beside those that
+    the scene itself may have. Raises Interrupted, and UserError."""
+    scene, program = runs.scene, runs.program
+    directory = scene.directory + "price/"
 
     def report():
-        write_price(scene, eps, "".join(console.said), runs.program.origin())
+        make_directory(directory)
+        title = f"# Price of an error of {digits(eps)}: `{Path(scene.file).name}`"
+        said = as_markdown("".join(console.said))
+        text = f"{title}\n\n*{program.origin()}*\n\n{said}"
+        replace_file(directory + "price.md", text)
 
     if (
         not scene["Exact solution/Displacement"]
@@ -463,43 +427,19 @@ def run_at_price(runs, eps, console, only_price=False, options=()):
     chosen = choose(runs, eps, console)
     report()
     if only_price:
-        return
+        return directory
 
     # The run that was chosen, with all output of the scene.
-    console.say("Now the run with")
-    for entry in chosen.assignments:
-        console.say(f"  --set '{entry}'")
-    console.say("")
-    # Beside what the scene itself may have computed.
-    place = [
-        f"Output/Directory={directory}",
+    chosen_entries = "".join(f"  --set '{entry}'\n" for entry in chosen.assignments)
+    console.say(f"Now the run with\n{chosen_entries}")
+    entries = [
+        *(*runs.overrides, *chosen.assignments, f"Output/Directory={directory}"),
         f"Checkpoint/Directory={directory}checkpoint",
     ]
-    entries = set_options(runs.overrides + chosen.assignments + place)
-    code, messages, _ = console.follow(
-        lambda words, output: launch(
-            runs.program, [*options, *words, *runs.files, *entries], output
-        )
-    )
-    if code == 3:
-        raise Interrupted(sentence(messages, code))
-    if code != 0:
-        raise RunError(sentence(messages, code), code)
+    words = [*options, *runs.files, *set_options(entries)]
+    console.follow(lambda log, stdout: program.launch(*log, *words, stdout=stdout))
     result = runs.record_of(chosen.key, Path(directory))
-    if result is None:
-        return  # there was nothing left to compute
-    found = {
-        "error": error_of(result, chosen.measure, None),
-        "seconds": result.number("seconds_total"),
-        "memory": result.number("peak_memory_MB"),
-        "cells": result.number("cells"),
-        "steps": result.number("steps"),
-    }
-    text = "\nThe prediction:\n"
-    for name, predicted in chosen.expected.items():
-        if name == "steps" and not scene.has_tolerance and not scene.has_step_control:
-            continue
-        after = {"seconds": ", without field output", "memory": " MB"}.get(name, "")
-        text += f"  {name:7}  {compare(predicted, found[name])}{after}\n"
-    console.say(text, end="")
-    report()
+    if result:  # otherwise there was nothing left to compute
+        console.say(comparison(scene, chosen, result), end="")
+        report()
+    return directory

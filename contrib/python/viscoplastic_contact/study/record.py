@@ -3,6 +3,7 @@
 
 import json
 import math
+import re
 from dataclasses import asdict, dataclass, field, replace
 from math import inf, isfinite, nan
 from typing import NamedTuple
@@ -11,7 +12,7 @@ import numpy as np
 
 from ..results import read_statistics
 from ..tables import UserError
-from .solvers import SolverDemand
+from .cost import SolverDemand
 
 STRATEGIES = ("uniform", "adaptive", "tolerance")
 
@@ -86,8 +87,7 @@ class RunRecord:
 
     key: RunKey
     name: str = ""
-    # What identifies the scene and the program, by name: a record with another
-    # stamp belongs to something else.
+    # Of the scene and the program: with another one it belongs to something else.
     stamp: dict = field(default_factory=dict)
     # Sizes, costs and errors, by the name of their column in study.csv.
     numbers: dict = field(default_factory=dict)
@@ -115,22 +115,11 @@ def vector_name(name):
     return name[:-2] if len(name) > 2 and name[-2:] in ("_x", "_y", "_z") else name
 
 
-def is_quantity(column):
-    """Whether a column is a quantity of interest, with or without _x, _y, _z."""
-    name = vector_name(column)
-    return name in (
-        "friction_force",
-        "contact_force",
-        "contact_area",
-        "slip_area",
-        "friction_dissipation",
-        "viscous_dissipation",
-        "max_displacement",
-        "stored_energy",
-    ) or any(
-        name.startswith(prefix) and name[len(prefix) :].isdigit()
-        for prefix in ("friction_force_", "contact_force_", "reaction_", "point")
-    )
+# Quantities of interest, with or without _x, _y, _z.
+QUANTITY = re.compile(
+    r"(friction_force|contact_force)(_\d+)?|reaction_\d+|point\d+|contact_area|slip_area|"
+    r"friction_dissipation|viscous_dissipation|max_displacement|stored_energy"
+)
 
 
 def read_table(path):
@@ -160,13 +149,10 @@ def make_record(key, table, costs, is_difference=False, quantity=""):
     the run itself count, too. The estimated error of a quantity of interest, if
     there is one, is relative to its largest value. Numbers of unknowns and cells are
     means over the steps."""
-    number = {}
-    n_rows = len(table["step"])  # with the initial state
-    number["steps"] = n_rows - 1.0
+    number = {"steps": len(table["step"]) - 1.0}  # without the initial state
     number["k"] = largest(table, "k")
     for name in ("cells", "dofs"):
-        values = table[name]
-        number[name] = float(values[1:].mean() if n_rows > 1 else values[0])
+        number[name] = float((table[name][1:] if number["steps"] else table[name]).mean())
     # A table knows all of a run that was resumed, the timer the last part.
     total = rest = float(table["wall_total"][-1])
     for phase, column in PHASES.items():
@@ -175,14 +161,12 @@ def make_record(key, table, costs, is_difference=False, quantity=""):
         seconds = float(table[wall].sum()) if wall in table else timed
         number[column] = number.get(column, 0.0) + seconds
         rest -= seconds
-        if phase in NO_COST:
-            total -= seconds
+        total -= seconds if phase in NO_COST else 0.0
     number["seconds_total"], number["seconds_rest"] = total, rest
     number["peak_memory_MB"] = costs.get("peak_memory_MB", nan)
     number["first_memory_MB"] = costs.get("memory_before_MB", nan)
     for name in ("contact_iterations", "linear_iterations"):
-        number[name] = float(table[name].sum()) if name in table else 0.0
-
+        number[name] = float(np.sum(table.get(name, 0.0)))
     limits = [value for value in table.get("step_limit", ()) if value > 0.0]
     number["step_limit"] = float(min(limits, default=inf))
 
@@ -197,10 +181,9 @@ def make_record(key, table, costs, is_difference=False, quantity=""):
         number[name] = relative(largest(table, name), size)
     if is_difference:
         number["is_difference"] = 1.0
-    norm = largest(table, "energy_norm")
+    norm, error = largest(table, "energy_norm"), largest(table, "error_energy")
     for name in ESTIMATE_PARTS:
         number[name] = relative(largest(table, name), norm)
-    error = largest(table, "error_energy")
     number["effectivity"] = relative(largest(table, "estimate_total"), error)
     number["effectivity_recovery"] = relative(largest(table, "estimate_recovery"), error)
     if quantity:
@@ -213,30 +196,10 @@ def make_record(key, table, costs, is_difference=False, quantity=""):
         numbers=number,
         demand=replace(demand, dofs=math.floor(number["dofs"] + 0.5)),
         quantities={
-            name: float(values[-1]) for name, values in table.items() if is_quantity(name)
+            name: float(values[-1])
+            for name, values in table.items()
+            if QUANTITY.fullmatch(vector_name(name))
         },
-    )
-
-
-def to_json(record):
-    """The text of result.json."""
-    variant = record.key.variant
-
-    def finite(numbers):
-        return {name: v if isfinite(v) else None for name, v in numbers.items()}
-
-    return json_text(
-        {
-            "run": record.name,
-            **variant._asdict(),
-            "mesh_level": record.key.mesh_level,
-            "time_level": record.key.time_level,
-            "timing": record.key.is_timing,
-            "stamp": record.stamp,
-            "solver_demand": asdict(record.demand),
-            "numbers": finite(record.numbers),
-            "quantities": finite(record.quantities),
-        }
     )
 
 
@@ -255,41 +218,51 @@ def json_text(contents):
     return json.dumps(mended(contents), indent=2, ensure_ascii=False) + "\n"
 
 
-def from_json(text, path):
-    """The record in the text of a file."""
+def picked(source, names):
+    """Attributes as a dictionary, by names `name' or `name=attribute'."""
+    pairs = (name.split("=") for name in names.split())
+    return {pair[0]: getattr(source, pair[-1]) for pair in pairs}
 
-    def of(value, kind):
-        # True and False are integers in Python.
-        if not isinstance(value, kind) or (kind is not bool and isinstance(value, bool)):
-            raise ValueError(f"{value!r} is none of {kind}")
-        return value
+
+def to_json(record):
+    """The text of result.json."""
+    key = record.key
+    return json_text(
+        {
+            "run": record.name,
+            **key.variant._asdict(),
+            "mesh_level": key.mesh_level,
+            "time_level": key.time_level,
+            "timing": key.is_timing,
+            "stamp": record.stamp,
+            "solver_demand": asdict(record.demand),
+            "numbers": record.numbers,
+            "quantities": record.quantities,
+        }
+    )
+
+
+def from_json(text, path):
+    """The record in the text of a file, which has to be that of to_json()."""
 
     def numbers(values):
-        result = {}
-        for name, value in of(values, dict).items():
-            result[name] = nan if value is None else float(of(value, (int, float)))
-            if math.isinf(result[name]):
-                raise ValueError(f"{name} is out of range")
-        return result
+        given = {name: nan if v is None else v for name, v in values.items()}
+        return {n: v if type(v) is int else float(v) for n, v in given.items()}
 
     try:
-        found = of(json.loads(text), dict)
-        variant = MethodVariant(*(of(found[name], str) for name in MethodVariant._fields))
-        if variant.strategy not in STRATEGIES:
-            raise ValueError(f"'{variant.strategy}' is no strategy")
-        key = RunKey(
-            variant,
-            of(found["mesh_level"], int),
-            of(found["time_level"], int),
-            of(found["timing"], bool),
-        )
-        return RunRecord(
-            key,
-            of(found["run"], str),
-            {name: of(value, str) for name, value in of(found["stamp"], dict).items()},
+        found = json.loads(text)
+        variant = MethodVariant(*(found[name] for name in MethodVariant._fields))
+        levels = int(found["mesh_level"]), int(found["time_level"])
+        record = RunRecord(
+            RunKey(variant, *levels, bool(found["timing"])),
+            found["run"],
+            {name: str(value) for name, value in found["stamp"].items()},
             numbers(found["numbers"]),
-            SolverDemand(**of(found["solver_demand"], dict)),
+            SolverDemand(**found["solver_demand"]),
             numbers(found["quantities"]),
         )
-    except (ValueError, TypeError, KeyError, RecursionError) as error:
+        if variant.strategy not in STRATEGIES or to_json(record) != text:
+            raise ValueError("it has been changed")
+    except (ValueError, TypeError, KeyError, AttributeError, RecursionError) as error:
         raise UserError(f"'{path}' is no record of a finished run: {error}") from error
+    return record

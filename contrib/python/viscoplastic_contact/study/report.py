@@ -5,7 +5,7 @@ and prices; study.md, the same for people (markdown.py)."""
 import time
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Optional
+from typing import Optional, Union
 
 from .analysis import (
     MEASURES,
@@ -18,49 +18,49 @@ from .analysis import (
     of_variant,
     quantity_error,
 )
+from .cost import SOLVERS, choose_solver
 from .markdown import markdown
-from .price import WorkPrecisionModel, list_prices, price_in_words
-from .record import ESTIMATE_PARTS, FIELD_ERRORS, PHASES, MethodVariant, json_text
-from ..program import processor
-from .runs import replace_file
-from .solvers import SOLVERS, choose_solver
-from .tolerance import ToleranceModel, price_of, tolerance_price_in_words
-
-# Sizes and costs in study.csv.
-NUMBERS = (
-    *("h", "k", "cells", "dofs", "steps", "seconds_total"),
-    *dict.fromkeys(PHASES.values()),
-    *("seconds_rest", "peak_memory_MB", "contact_iterations", "linear_iterations"),
+from .price import (
+    COSTS,
+    ToleranceModel,
+    WorkPrecisionModel,
+    list_prices,
+    price_in_words,
 )
-ERRORS = (
-    *FIELD_ERRORS,
-    *ESTIMATE_PARTS,
+from .record import (
+    ESTIMATE_PARTS,
+    FIELD_ERRORS,
+    PHASES,
+    MethodVariant,
+    json_text,
+    picked,
+)
+from .runs import replace_file
+
+# Sizes, costs and errors in study.csv.
+NUMBERS = (
+    *("tolerance", "step_tolerance", "h", "k", "cells", "dofs", "steps"),
+    *("seconds_total", *dict.fromkeys(PHASES.values()), "seconds_rest"),
+    *("peak_memory_MB", "contact_iterations", "linear_iterations"),
+    *(*FIELD_ERRORS, *ESTIMATE_PARTS),
     *("effectivity", "effectivity_recovery", "estimate_quantity"),
 )
 
 
 @dataclass
 class VariantResult:
-    """What the finished runs of a method variant say: models and prices of given
-    meshes and steps, or of tolerances. Without a known error there is neither a model
-    nor a price."""
+    """What the finished runs of a method variant say: a model and prices of given
+    meshes and steps, or of tolerances. Without a known error there is neither."""
 
     variant: MethodVariant
     records: list
     measure: str
-    model: Optional[WorkPrecisionModel] = None
+    model: Optional[Union[WorkPrecisionModel, ToleranceModel]] = None
     prices: list = field(default_factory=list)
-    tolerance_model: Optional[ToleranceModel] = None
-    tolerance_prices: list = field(default_factory=list)
 
-    def prices_in_words(self, budget):
-        return [
-            *(price_in_words(self.model, price, budget) for price in self.prices),
-            *(
-                tolerance_price_in_words(self.tolerance_model, price, budget)
-                for price in self.tolerance_prices
-            ),
-        ]
+    @property
+    def is_to_tolerance(self):
+        return self.variant.strategy == "tolerance"
 
 
 def analyze(study):
@@ -69,27 +69,27 @@ def analyze(study):
     reference, scene, results = study.reference(), study.runs.scene, []
     for variant in study.variants():
         records = of_variant(study.records(), variant)
-        measure = best_measure(records, reference)
-        result = VariantResult(variant, records, measure)
-        if measure and variant.strategy == "tolerance":
-            model = fit_tolerance_runs(scene, records, measure, reference)
-            result.tolerance_model = model
-            result.tolerance_prices = [price_of(model, e, study.budget) for e in errors]
-        elif measure:
-            timed = study.timed(variant)
-            result.model = fit_work_precision(scene, records, timed, measure, reference)
-            result.prices = list_prices(result.model, errors, study.budget)
+        result = VariantResult(variant, records, best_measure(records, reference))
         results.append(result)
+        found = result.measure, reference
+        if not result.measure:
+            continue
+        if result.is_to_tolerance:
+            result.model = fit_tolerance_runs(scene, records, *found)
+        else:
+            timed = study.timed(variant)
+            result.model = fit_work_precision(scene, records, timed, *found)
+        result.prices = list_prices(result.model, errors, study.budget)
     return results
 
 
-def prices_in_words(study):
+def prices_in_words(results, budget):
     """The price lists as sentences, one a line."""
     return "".join(
-        f"Prices ({result.variant.name}), by the {MEASURES[result.measure]}:\n"
-        + "".join(f"  {price}\n" for price in result.prices_in_words(study.budget))
-        for result in analyze(study)
-        if result.measure
+        f"Prices ({r.variant.name}), by the {MEASURES[r.measure]}:\n"
+        + "".join(f"  {price_in_words(r.model, p, budget)}\n" for p in r.prices)
+        for r in results
+        if r.measure
     )
 
 
@@ -99,40 +99,39 @@ def origin(runs):
     return {
         "version": f"{about['version']} ({about['revision']})",
         "ranks": runs.program.ranks,
-        "machine": processor(),
+        "machine": runs.program.processor(),
         "date": time.strftime("%Y-%m-%dT%H:%M:%SZ", time.gmtime()),
     }
 
 
 def write_report(study, is_finished):
-    """Each file is replaced at once."""
+    """Each file is replaced at once. Returns the results."""
     results, about = analyze(study), origin(study.runs)
-    directory = study.runs.directory
-    replace_file(directory + "study.csv", csv(study))
+    json = json_text(contents(study, results, about, is_finished))
+    replace_file(study.directory + "study.csv", csv(study))
+    replace_file(study.directory + "study.json", json)
     replace_file(
-        directory + "study.json", json_text(contents(study, results, about, is_finished))
+        study.directory + "study.md", markdown(study, results, about, is_finished)
     )
-    replace_file(directory + "study.md", markdown(study, results, about, is_finished))
+    return results
 
 
 def csv(study):
     names = list(study.records()[0].quantities)
-    head = "run,strategy,scheme,history,solver,ladder,mesh_level,time_level"
-    head = [head, "tolerance", "step_tolerance", *NUMBERS, *ERRORS]
-    head += [column for name in names for column in (name, f"{name}_error")]
-    lines = [",".join(head)]
+    lines = ["run,strategy,scheme,history,solver,ladder,mesh_level,time_level"]
+    lines[0] += "".join(f",{column}" for column in NUMBERS)
+    lines[0] += "".join(f",{name},{name}_error" for name in names)
     for ladder in ("space", "time", "both"):
         for run in study.plan:
-            if run.record and ladder in run.ladders:
-                record, key = run.record, run.record.key
-                texts = [record.name, *key.variant, choose_solver(record.demand), ladder]
-                numbers = [key.mesh_level, key.time_level]
-                numbers += map(record.number, ("tolerance", "step_tolerance"))
-                numbers += map(record.number, (*NUMBERS, *ERRORS))
-                for name in names:
-                    numbers.append(record.quantity(name))
-                    numbers.append(quantity_error(record, name, study.reference()))
-                lines.append(",".join([*texts, *(f"{value:.12g}" for value in numbers)]))
+            if not run.record or ladder not in run.ladders:
+                continue
+            record, key = run.record, run.record.key
+            texts = [record.name, *key.variant, choose_solver(record.demand), ladder]
+            numbers = [key.mesh_level, key.time_level, *map(record.number, NUMBERS)]
+            for name in names:
+                numbers.append(record.quantity(name))
+                numbers.append(quantity_error(record, name, study.reference()))
+            lines.append(",".join([*texts, *(f"{value:.12g}" for value in numbers)]))
     return "\n".join(lines) + "\n"
 
 
@@ -144,12 +143,12 @@ def contents(study, results, about, is_finished):
     fits, tolerance_fits, costs, prices = [], [], [], []
     for result in results:
         variant = result.variant._asdict()
-        if result.tolerance_model:
-            tolerance_fits.append({**variant, **tolerance_fit(result)})
-        elif result.variant.strategy != "tolerance":
+        if not result.is_to_tolerance:
             fits += ({**variant, **fit} for fit in fits_of(study, result))
             costs.append({**variant, **costs_of(study, result)})
-        prices += ({**variant, **price} for price in prices_of(result))
+        elif result.model:
+            tolerance_fits.append({**variant, **tolerance_fit(result)})
+        prices += ({**variant, **price_of(result, price)} for price in result.prices)
     return {
         "scene": Path(scene.file).stem,
         **about,
@@ -172,15 +171,8 @@ def fits_of(study, result):
         if fit.misfit.n_samples >= 3:
             yield {
                 "error": measure,
-                "C_h": fit.c_1,
-                "p": fit.p,
-                "p_is_fitted": fit.p_is_fitted,
-                "C_k": fit.c_2,
-                "q": fit.q,
-                "q_is_fitted": fit.q_is_fitted,
-                "m": fit.m,
-                "rms_of_log": fit.misfit.rms,
-                "worst_factor": fit.misfit.worst_factor,
+                **picked(fit, "C_h=c_1 p p_is_fitted C_k=c_2 q q_is_fitted m"),
+                **picked(fit.misfit, "rms_of_log=rms worst_factor"),
                 "worst_run": result.records[fit.misfit.worst_sample].name,
             }
 
@@ -189,13 +181,8 @@ def costs_of(study, result):
     timed = study.timed(result.variant)
     cost = cost_of(timed)
 
-    def power(fit):
-        return {
-            "c": fit.c_1,
-            "a": fit.p,
-            "constant": fit.c_2,
-            "rms_of_log": fit.misfit.rms,
-        }
+    def power(fit, names="c=c_1 a=p constant=c_2"):
+        return {**picked(fit, names), "rms_of_log": fit.misfit.rms}
 
     found = {
         "solvers": [
@@ -209,78 +196,42 @@ def costs_of(study, result):
             if name in cost.solvers
         ],
         "c_dofs_a_steps": power(cost.simple),
-        "rms_of_log": cost.misfit.rms,
-        "worst_factor": cost.misfit.worst_factor,
+        **picked(cost.misfit, "rms_of_log=rms worst_factor"),
         "memory_rms_of_log": cost.memory_misfit.rms,
     }
     if study.runs.scene.has_step_control:
-        steps = fit_chosen_steps(timed)
-        found["steps"] = {
-            "c": steps.c_1,
-            "q": steps.p,
-            "q_is_fitted": steps.p_is_fitted,
-            "constant": steps.c_2,
-            "rms_of_log": steps.misfit.rms,
-        }
+        names = "c=c_1 q=p q_is_fitted=p_is_fitted constant=c_2"
+        found["steps"] = power(fit_chosen_steps(timed), names)
     return found
 
 
 def tolerance_fit(result):
     """c_1 TOL^p for errors, c_1 TOL^-p + c_2 for costs."""
-    model = result.tolerance_model
+    model = result.model
     found = {
         "error": result.measure,
-        "C": model.error.c_1,
-        "s": model.error.p,
-        "s_is_fitted": model.error.p_is_fitted,
+        **picked(model.error, "C=c_1 s=p s_is_fitted=p_is_fitted"),
         "rms_of_log": model.error.misfit.rms,
     }
-    for name in ("seconds", "cells", "dofs", "steps", "memory"):
+    for name in COSTS:
         cost = getattr(model, name)
         found["memory_MB" if name == "memory" else name] = {
-            "c": cost.c_1,
-            "q": cost.p,
-            "q_is_fitted": cost.p_is_fitted,
-            "constant": cost.c_2,
+            **picked(cost, "c=c_1 q=p q_is_fitted=p_is_fitted constant=c_2"),
             "exponent_against_error": model.exponent(cost),
             "rms_of_log": cost.misfit.rms,
         }
     return found
 
 
-def prices_of(result):
-    for price in result.tolerance_prices:
-        yield {
-            "error": result.measure,
-            "tolerance": price.error,
-            "in_budget": price.is_in_budget,
-            "run_tolerance": price.run.tolerance,
-            "cells": price.run.cells,
-            "steps": price.run.steps,
-            "dofs": price.run.dofs,
-            "predicted_error": price.run.error,
-            "seconds": price.run.seconds,
-            "memory_MB": price.run.memory,
-            "halving_factor": price.halving,
-        }
-    for price in result.prices:
-        found = {
-            "error": result.measure,
-            "tolerance": price.error,
-            "in_budget": price.is_in_budget,
-        }
-        if price.run:
-            run = price.run
-            found |= {
-                "h": run.h,
-                "mesh_level": run.mesh_level,
-                "step_tolerance" if result.model.chosen_steps else "k": run.k,
-                "steps": run.steps,
-                "dofs": run.dofs,
-                "predicted_error": run.error,
-                "solver": run.solver,
-                "seconds": run.seconds,
-                "memory_MB": run.memory,
-                "halving_factor": price.halving,
-            }
-        yield found
+def price_of(result, price):
+    found = {"error": result.measure}
+    found |= picked(price, "tolerance=error in_budget=is_in_budget")
+    if not price.run:
+        return found
+    if result.is_to_tolerance:
+        names = "run_tolerance=tolerance cells steps dofs predicted_error=error "
+    else:
+        k = "step_tolerance=k" if result.model.chosen_steps else "k"
+        names = f"h mesh_level {k} steps dofs predicted_error=error solver "
+    found |= picked(price.run, names + "seconds memory_MB=memory")
+    return {**found, "halving_factor": price.halving}

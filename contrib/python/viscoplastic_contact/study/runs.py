@@ -4,20 +4,16 @@ of its own below that of the study. A finished run leaves result.json there, whi
 is written at once (a file is renamed) and last of all: a run is finished if that
 file exists and belongs to the same scene, program and number of ranks."""
 
-import ctypes
 import fcntl
 import json
 import os
-import signal
 import subprocess
 import zlib
-from dataclasses import dataclass
 from pathlib import Path
-from typing import Optional
 
-from ..program import RunError, sentence
-from ..tables import UserError
-from .record import RunRecord, from_json, make_record, read_table, to_json
+from ..scene import set_options
+from ..tables import RunError, UserError
+from .record import from_json, make_record, read_table, to_json
 from .scene import Scene
 
 # What runs of a study go without.
@@ -36,20 +32,16 @@ NO_OUTPUTS = (
 class Interrupted(RunError):
     """A signal has ended a study."""
 
-    def __init__(self, sentence):
-        super().__init__(sentence, 3)
+    def __init__(self, signal, what):
+        super().__init__(f"{signal} has ended {what}; the same command goes on.", 3)
 
 
-@dataclass
-class Outcome:
-    """How a run has ended: one of these. Failure: why the scene could not be
-    computed, in a sentence; interruption: the name of the signal that ended it. Too
-    slow: whether it was ended for its time."""
+class Failure(UserError):
+    """A scene could not be computed, and why."""
 
-    record: Optional[RunRecord] = None
-    failure: str = ""
-    interruption: str = ""
-    is_too_slow: bool = False
+
+class TooSlow(Failure):
+    """A run was ended for its time."""
 
 
 def make_directory(path):
@@ -108,54 +100,6 @@ class DirectoryLock:
             self.file.close()
 
 
-def set_options(entries):
-    """Entries `Section/Entry=value' as options of the program."""
-    return [word for entry in entries for word in ("--set", entry)]
-
-
-def die_with_parent():
-    """In a new process: what nobody waits for any more ends. Linux only."""
-    try:
-        ctypes.CDLL(None).prctl(1, signal.SIGKILL)  # PR_SET_PDEATHSIG
-    except (OSError, AttributeError):
-        pass
-
-
-def launch(program, arguments, stdout=subprocess.DEVNULL, limit=None):
-    """Run the program; returns exit code, messages, and the name of a signal that
-    came meanwhile. Signals go to the program, which ends after a checkpoint, as it
-    does after so many seconds as a limit; then raises subprocess.TimeoutExpired."""
-    received = []
-    process = subprocess.Popen(
-        program.command(*arguments),
-        env=program.environment,
-        stdin=subprocess.DEVNULL,
-        stdout=stdout,
-        stderr=subprocess.PIPE,
-        text=True,
-        start_new_session=True,
-        preexec_fn=die_with_parent,
-    )
-
-    def forward(number, _):
-        received.append(signal.Signals(number).name)
-        process.send_signal(number)
-
-    before = {n: signal.signal(n, forward) for n in (signal.SIGINT, signal.SIGTERM)}
-    try:
-        _, messages = process.communicate(timeout=limit)
-    except subprocess.TimeoutExpired:
-        process.terminate()
-        process.communicate()
-        if not received:
-            raise
-        messages = ""
-    finally:
-        for number, handler in before.items():
-            signal.signal(number, handler)
-    return process.returncode, messages, received[0] if received else ""
-
-
 class StudyRuns:
     """The runs of the scene that files and overrides (`Section/Entry=value') give.
 
@@ -194,9 +138,9 @@ class StudyRuns:
     def place(self, key):
         return self.directory + self.name(key)
 
-    def file_of(self, key, name):
-        """A file of the results of a run."""
-        return Path(self.place(key)) / name
+    def table(self, key):
+        """The statistics of a run."""
+        return read_table(Path(self.place(key)) / "statistics.csv")
 
     def is_compared(self, key):
         """Whether a run is compared with the reference."""
@@ -204,17 +148,13 @@ class StudyRuns:
 
     def entries_of(self, key):
         """What is set for a run. Raises UserError for a mesh that is too coarse."""
-        place = self.place(key)
-        is_reference = key == self.reference
-        result = self.scene.discretization(
-            key,
-            self.scene.phases_of(key),
-            self.scene.step_tolerance(key),
-            self.may_subdivide,
+        scene, place = self.scene, self.place(key)
+        result = scene.discretization(
+            key, scene.phases_of(key), scene.step_tolerance(key), self.may_subdivide
         )
         result += [
             f"Output/Directory={place}",
-            f"Output/Reference fields={'true' if is_reference else 'false'}",
+            f"Output/Reference fields={str(key == self.reference).lower()}",
             "Checkpoint/Wall time limit=0",
             f"Checkpoint/Directory={place}/checkpoint",
         ]
@@ -222,36 +162,31 @@ class StudyRuns:
         if not self.has_outputs:
             result += NO_OUTPUTS
         if self.is_compared(key):
-            result.append(
-                f"Exact solution/Reference directory={self.place(self.reference)}"
-            )
+            place = self.place(self.reference)
+            result.append(f"Exact solution/Reference directory={place}")
         return result
 
     def stamp(self, key, entries):
         """What tells a run from those of other scenes and programs."""
+        about, reference = self.scene.about, "Exact solution/Reference directory"
         knows_reference = self.reference is not None and not key.is_timing
-        values = dict(self.scene.values)
-        for entry in entries:
-            path, value = entry.split("=", 1)
-            values[path] = value
-        text = f"{self.scene.about['files']}\n"
+        values = {**self.scene.values, **dict(entry.split("=", 1) for entry in entries)}
+        text = f"{about['files']}\n"
         for path, value in sorted(values.items()):
-            if (
-                path in ("Output/Points", "Output/Reference fields")
-                or (self.has_outputs and path.startswith("Output/Fields"))
-                or not (
-                    path.startswith(("Output/", "Study/", "Checkpoint/"))
-                    or (knows_reference and path == "Exact solution/Reference directory")
-                )
-            ):
+            is_other = path.startswith(("Output/", "Study/", "Checkpoint/"))
+            if knows_reference and path == reference:
+                is_other = True
+            if self.has_outputs and path.startswith("Output/Fields"):
+                is_other = False
+            if not is_other or path in ("Output/Points", "Output/Reference fields"):
                 text += f"{path}={value}\n"
         if knows_reference:
             text += self.name(self.reference)
         return {
             "ranks": str(self.program.ranks),
-            "revision": self.scene.about["revision"],
+            "revision": about["revision"],
             "scene": str(zlib.crc32(text.encode())),
-            "version": self.scene.about["version"],
+            "version": about["version"],
         }
 
     def find(self, key):
@@ -265,16 +200,16 @@ class StudyRuns:
             return None  # the run is made again
         record.stamp.pop("overrides", None)
         # Levels count from a tolerance that may have changed, names do not.
+        has_key = record.key == key
         if key.variant.strategy == "tolerance":
             has_key = record.key.variant == key.variant and record.name == self.name(key)
-        else:
-            has_key = record.key == key
         record.key = key
         return record if has_key and record.stamp == expected else None
 
-    def make(self, key, limit=None):
-        """Compute a run, within so many seconds if there is a limit. It goes on from a
-        checkpoint that a signal has left."""
+    def make(self, key, what, limit=None):
+        """The record of a run, which goes on from a checkpoint that a signal has left.
+        Raises Failure: TooSlow where it takes more than so many seconds as a limit;
+        and Interrupted, whose sentence says what a signal has ended."""
         entries = self.entries_of(key)
         stamp, place = self.stamp(key, entries), Path(self.place(key))
         # What has been left of the same run goes on, of another one goes.
@@ -284,59 +219,57 @@ class StudyRuns:
         mark = place / "begun"
         goes_on = mark.exists() and mark.read_text(errors="replace") == begun
         replace_file(mark, begun)
-        options = set_options(self.overrides + entries)
-        arguments = [
-            *("--quiet", "--log", place / "log.txt"),
-            *(["--restart=auto"] if goes_on else []),
-            *self.files,
-            *options,
-        ]
         try:
-            code, messages, interruption = launch(self.program, arguments, limit=limit)
+            signal = self.program.launch(
+                *("--quiet", "--log", place / "log.txt"),
+                *(["--restart=auto"] if goes_on else []),
+                *self.files,
+                *set_options(self.overrides + entries),
+                limit=limit,
+            )
         except subprocess.TimeoutExpired:
-            return Outcome(failure=f"It takes more than {limit:.3g} s.", is_too_slow=True)
-        if code != 0:
-            if interruption:
-                return Outcome(interruption=interruption)
-            return Outcome(failure=sentence(messages, code))
+            raise TooSlow(f"It takes more than {limit:.3g} s.") from None
+        except RunError as error:
+            if error.signal:
+                raise Interrupted(error.signal, what) from None
+            raise Failure(str(error)) from None
         record = self.record_of(key, place)
         if record is None:  # there was nothing left to compute
             mark.unlink()
-            return self.make(key, limit)
+            return self.make(key, what, limit)
         record.name, record.stamp = self.name(key), dict(stamp)
         record.stamp["overrides"] = "; ".join(self.overrides + entries)
         replace_file(place / "result.json", to_json(record))
+        if signal:
+            raise Interrupted(signal, what)
         found = self.find(key)
         if found is None:
-            raise UserError(
-                f"'{place}/result.json' has changed since it was written."
-            )
-        return Outcome(record=found, interruption=interruption)
+            raise UserError(f"'{place}/result.json' has changed since it was written.")
+        return found
 
     def record_of(self, key, place):
         """The numbers of a run in a directory of results; None if what it has cost is
         not there."""
-        scene = self.scene
+        scene, strategy = self.scene, key.variant.strategy
         about = json.loads((place / "run.json").read_text(encoding="utf-8"))
-        costs = about.get("costs")
-        if costs is None:
+        if about.get("costs") is None:
             return None
         record = make_record(
             key,
             read_table(place / "statistics.csv"),
-            costs,
+            about["costs"],
             self.is_compared(key),
             # its column, whatever names of places the scene has
             about.get("estimated_error_of_quantity", {}).get("quantity", ""),
         )
-        numbers, strategy = record.numbers, key.variant.strategy
+        numbers = record.numbers
         numbers["h"] = scene.mesh_width(numbers["cells"])
         if strategy == "tolerance":
             numbers["tolerance"] = scene.tolerance(key)
-        else:
-            numbers["set_ups"] = scene.n_set_ups(
-                strategy, numbers["steps"], scene.planned_steps(key)
-            )
-            if scene.has_step_control:
-                numbers["step_tolerance"] = scene.step_tolerance(key)
+            return record
+        numbers["set_ups"] = scene.n_set_ups(
+            strategy, numbers["steps"], scene.planned_steps(key)
+        )
+        if scene.has_step_control:
+            numbers["step_tolerance"] = scene.step_tolerance(key)
         return record

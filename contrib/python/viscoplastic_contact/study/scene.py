@@ -6,14 +6,46 @@ import copy
 import json
 import math
 
+from ..scene import set_options
 from ..tables import UserError
-from .phases import n_steps, read_phases, scale_phases, write_phases
 from .record import MethodVariant, RunKey
 
 # Runs with larger tolerances have hardly an error that obeys a law.
 LARGEST_TOLERANCE = 0.5
 
-GENERATOR_WITH_SUBDIVISIONS = "subdivided_hyper_rectangle"
+# `Time/Phases' are pairs of the end of a phase, as the scene gives it, and its number
+# of steps.
+MOST_STEPS = 10**8
+
+
+def read_phases(text):
+    pairs = (phase.split(":") for phase in text.split(",") if phase.strip())
+    return [(end.strip(), int(float(n))) for end, n in pairs]
+
+
+def write_phases(phases):
+    return ", ".join(f"{end}: {n}" for end, n in phases)
+
+
+def scale_phases(phases, factor):
+    """Every phase with factor times its steps, rounded up."""
+    return [
+        (end, int(min(max(math.ceil(factor * n * (1.0 - 1e-12)), 1), MOST_STEPS)))
+        for end, n in phases
+    ]
+
+
+def n_steps(phases):
+    return sum(n for _, n in phases)
+
+
+def largest_step(phases):
+    """The longest step."""
+    largest = start = 0.0
+    for end, n in phases:
+        largest = max(largest, (float(end) - start) / n)
+        start = float(end)
+    return largest
 
 
 class Scene:
@@ -21,9 +53,9 @@ class Scene:
     results go. With means the program has computed those of the data, too."""
 
     def __init__(self, program, files, overrides, means=False):
-        options = [word for text in overrides for word in ("--set", text)]
         check = f"--check={'means' if means else 'json'}"
-        self.use(json.loads(program.alone().call(check, *options, *files)))
+        words = [check, *set_options(overrides), *files]
+        self.use(json.loads(program.alone().call(*words)))
 
     def use(self, about):
         """Take over what the program says."""
@@ -35,13 +67,9 @@ class Scene:
 
     def with_entries(self, entries):
         """The scene with other entries `Section/Entry=value', on the same mesh."""
-        values = dict(self.values)
-        for entry in entries:
-            path, value = entry.split("=", 1)
-            values[path] = value
+        values = {**self.values, **dict(entry.split("=", 1) for entry in entries)}
         result = copy.copy(self)
-        directory = values["Output/Directory"] or self.directory
-        directory += "" if directory.endswith("/") else "/"
+        directory = (values["Output/Directory"] or self.directory).rstrip("/") + "/"
         result.use({**self.about, "values": values, "directory": directory})
         return result
 
@@ -87,11 +115,9 @@ class Scene:
             MethodVariant(strategy, self["Time/Scheme"], self["Material/Stress history"])
         )
 
-    def steps_per_mesh(self, strategy, n_steps):
-        """After how many of its steps a run has a new mesh: as the scene says if
-        that is adaptive, else ten times in all; 0 for uniform meshes."""
-        if strategy != "adaptive":
-            return 0
+    def steps_per_mesh(self, n_steps):
+        """After how many of its steps an adaptive run has a new mesh: as the scene says
+        if that is adaptive, else ten times in all."""
         if self.is_adaptive:
             return int(self.number("Mesh refinement/Every n steps"))
         return max(1, n_steps // 10)
@@ -99,8 +125,9 @@ class Scene:
     def n_set_ups(self, strategy, n_steps, n_planned):
         """How often a run of so many steps is set up, once for each of its meshes,
         where its phases have n_planned steps: by step control these are others."""
-        every = self.steps_per_mesh(strategy, n_planned)
-        return max(1.0, math.ceil(n_steps / every)) if every else 1.0
+        if strategy != "adaptive":
+            return 1.0
+        return max(1.0, math.ceil(n_steps / self.steps_per_mesh(n_planned)))
 
     def phases_of(self, key):
         """Those of the scene with twice the steps for each time level."""
@@ -136,10 +163,8 @@ class Scene:
     def n_coarser_meshes(self):
         """How often the mesh can be made coarser by halving."""
         n = int(self.number("Geometry/Global refinements"))
-        if (
-            not self["Geometry/File"]
-            and self["Geometry/Generator"] == GENERATOR_WITH_SUBDIVISIONS
-        ):
+        generator = self["Geometry/Generator"]
+        if not self["Geometry/File"] and generator == "subdivided_hyper_rectangle":
             fewest = min(self.subdivisions())
             while fewest >= 2:
                 fewest = (fewest + 1) // 2
@@ -159,13 +184,10 @@ class Scene:
     def name(self, key):
         """The name of a run and of its directory."""
         text = key.variant.strategy
-        for choice, of_scene in (
-            (key.variant.scheme, self["Time/Scheme"]),
-            (key.variant.history, self["Material/Stress history"]),
-        ):
+        for choice, of_scene in zip(key.variant[1:], self.key().variant[1:]):
             if choice != of_scene:
                 text += "_" + identifier(choice)
-        if key.variant.strategy == "tolerance":
+        if text.startswith("tolerance"):
             text += f"_{self.tolerance(key):g}"
         else:
             text += f"_h{key.mesh_level}_k{key.time_level}"
@@ -180,10 +202,16 @@ class Scene:
             entries["Error control/Tolerance"] = self.tolerance(key)
             # Where it depends on the scheme, which is set above.
             entries["Time/Stiffness policy"] = self["Time/Stiffness policy"]
-        if strategy == "tolerance":
-            return assignments(entries)
+        if strategy != "tolerance":
+            self.add_mesh_and_steps(entries, key, steps, step_tolerance, may_subdivide)
+        return [
+            f"{path}={value:.12g}" if isinstance(value, float) else f"{path}={value}"
+            for path, value in entries.items()
+        ]
 
-        adaptive = strategy == "adaptive"
+    def add_mesh_and_steps(self, entries, key, steps, step_tolerance, may_subdivide):
+        """What is given of runs that do not choose it themselves."""
+        adaptive = key.variant.strategy == "adaptive"
         # Adaptive runs begin one level coarser: from a much coarser mesh,
         # refinement at singular points would leave the rest too coarse.
         level = key.mesh_level - (1 if adaptive and key.mesh_level > 0 else 0)
@@ -204,29 +232,24 @@ class Scene:
         if base + level < 0:
             entries["Geometry/Arguments"] = self.coarser_arguments(2.0 ** (base + level))
         if not adaptive:
-            entries["Mesh refinement/Strategy"] = "none"
-            return assignments(entries)
-        if not self.is_adaptive:
-            entries["Mesh refinement/Strategy"] = "residual"
-            entries["Mesh refinement/Refinement fraction"] = 0.6
-            entries["Mesh refinement/Coarsening fraction"] = 0.05
-            every = self.steps_per_mesh(strategy, n_steps(steps))
-            entries["Mesh refinement/Every n steps"] = every
-        cells = self.n_cells * 2.0 ** (self.dimension * key.mesh_level)
-        entries["Mesh refinement/Minimal level"] = min(refinements, base)
-        entries["Mesh refinement/Maximal level"] = max(
-            refinements, base + key.mesh_level + 2
-        )
-        entries["Mesh refinement/Cell budget"] = max(1, math.floor(cells + 0.5))
-        return assignments(entries)
-
-
-def assignments(entries):
-    """{"Section/Entry": value} as --set has them."""
-    return [
-        f"{path}={value:.12g}" if isinstance(value, float) else f"{path}={value}"
-        for path, value in entries.items()
-    ]
+            refinement = {"Strategy": "none"}
+        else:
+            cells = self.n_cells * 2.0 ** (self.dimension * key.mesh_level)
+            refinement = {
+                "Minimal level": min(refinements, base),
+                "Maximal level": max(refinements, base + key.mesh_level + 2),
+                "Cell budget": max(1, math.floor(cells + 0.5)),
+            }
+            if not self.is_adaptive:
+                refinement = {
+                    "Strategy": "residual",
+                    "Refinement fraction": 0.6,
+                    "Coarsening fraction": 0.05,
+                    "Every n steps": self.steps_per_mesh(n_steps(steps)),
+                    **refinement,
+                }
+        for name, value in refinement.items():
+            entries[f"Mesh refinement/{name}"] = value
 
 
 def identifier(text):

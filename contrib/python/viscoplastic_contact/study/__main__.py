@@ -22,7 +22,7 @@ USAGE = {
     "price": "Finds the cheapest mesh and steps for a relative error by a few short "
     "runs, says what they cost, and runs them.",
 }
-
+# What the program is told of --restart.
 RESTART = {"yes": "--restart", "auto": "--restart=auto"}
 
 
@@ -38,36 +38,24 @@ def parser_of(task):
     parser = Parser(
         prog=task, description=USAGE[task] + " Finished runs are not computed again."
     )
+    add = parser.add_argument
     if task == "price":
-        parser.add_argument("error", help="relative error from 1e-6 to 0.5", type=wanted)
-    parser.add_argument(
-        "files",
-        nargs="+",
-        metavar="scene.prm",
-        help="parameter files, of which later ones override earlier ones",
-    )
-    parser.add_argument(
-        "--set",
-        action="append",
-        default=[],
-        metavar="'SECTION/ENTRY=VALUE'",
-        help="override an entry of the files; may be repeated",
-    )
-    parser.add_argument("-n", dest="ranks", type=int, default=1, help="MPI ranks of runs")
-    parser.add_argument("--log", metavar="FILE", help="write the messages to FILE, too")
-    parser.add_argument("--quiet", action="store_true", help="print nothing but errors")
+        add("error", help="relative error from 1e-6 to 0.5", type=wanted)
+    files = "parameter files, of which later ones override earlier ones"
+    add("files", nargs="+", metavar="scene.prm", help=files)
+    entry = "override an entry of the files; may be repeated"
+    name = "'SECTION/ENTRY=VALUE'"
+    add("--set", action="append", default=[], metavar=name, help=entry)
+    add("-n", dest="ranks", type=int, default=1, help="MPI ranks of runs")
+    add("--log", metavar="FILE", help="write the messages to FILE, too")
+    add("--quiet", action="store_true", help="print nothing but errors")
     # Where the script learns of the directory of results.
-    parser.add_argument("--directory", metavar="FILE", help=argparse.SUPPRESS)
+    add("--directory", metavar="FILE", help=argparse.SUPPRESS)
     if task == "price":
-        parser.add_argument("--check", action="store_true", help="only say the price")
-        parser.add_argument(
-            "--verbose", action="store_true", help="a line for each step of the run"
-        )
-        parser.add_argument(
-            "--restart",
-            choices=RESTART,
-            help="go on from the last checkpoint of the run; =auto: if there is one",
-        )
+        add("--check", action="store_true", help="only say the price")
+        add("--verbose", action="store_true", help="a line for each step of the run")
+        restart = "go on from the last checkpoint of the run; =auto: if there is one"
+        add("--restart", choices=RESTART, help=restart)
     return parser
 
 
@@ -88,7 +76,7 @@ def run(task, options, program):
     """The directory of the results."""
     from .effects import EffectsStudy
     from .ladder import Study
-    from .pricing import run_at_price
+    from .pricing import Pricing
     from .runs import StudyRuns
     from .words import Console
 
@@ -101,7 +89,9 @@ def run(task, options, program):
         names = ("quiet", "verbose")
         of_run = [f"--{name}" for name in names if getattr(options, name)]
         of_run += [RESTART[options.restart]] if options.restart else []
-        return run_at_price(runs, options.error, console, options.check, of_run)
+        study = Pricing(runs, options.error, console)
+        study.run(options.check, of_run)
+        return study.directory
     if task == "study":
         study = Study(runs, console)
     study.run()

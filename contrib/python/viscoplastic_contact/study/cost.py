@@ -242,9 +242,10 @@ def fit_cost(samples):
     linear = Prior(weight=0.3)
     solve = Prior(p=1.0 if is_2d else 4.0 / 3.0, weight=0.3)
     factorize = Prior(p=1.2 if is_2d else 1.7, weight=0.3)
-    sizes = [float(s.demand.dofs) for s in samples]
-    names = [choose_solver(s.demand) for s in samples]
-    known_memory = [expected_memory(*of) for of in zip(names, (s.demand for s in samples))]
+    demands = [s.demand for s in samples]
+    sizes = [float(demand.dofs) for demand in demands]
+    names = [choose_solver(demand) for demand in demands]
+    known_memory = [expected_memory(*of) for of in zip(names, demands)]
     for solver in dict.fromkeys(names):
         of_it = [(n, s) for n, s, name in zip(sizes, samples, names) if name == solver]
         set_ups = [(n, 1.0, s.set_up_seconds / s.n_set_ups) for n, s in of_it]

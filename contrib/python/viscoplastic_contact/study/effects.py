@@ -52,10 +52,13 @@ LARGEST_COARSER = 0.75
 
 
 @dataclass
-class RunCost:
-    """What a run takes, and how much of that is chance: the difference between two
-    runs of the same scene. Memory in MB beyond what the process had before."""
+class Computed:
+    """A run, with its table; what it takes, and how much of that is chance: the
+    difference between two runs of the same scene. Memory in MB beyond what the process
+    had before."""
 
+    record: RunRecord = None
+    table: dict = field(default_factory=dict)
     seconds: float = 0.0
     seconds_chance: float = 0.0
     memory: float = 0.0
@@ -75,8 +78,8 @@ class EffectResult:
     verdict: str = CANNOT_BE_LEFT_OUT
     changes: list = field(default_factory=list)
     decisive: QuantityChange = field(default_factory=lambda: QuantityChange(""))
-    with_it: RunCost = field(default_factory=RunCost)
-    without: RunCost = field(default_factory=RunCost)
+    with_it: Computed = field(default_factory=Computed)
+    without: Computed = field(default_factory=Computed)
     # Why it could not be computed, and whether for its time alone.
     failure: str = ""
     is_too_slow: bool = False
@@ -129,15 +132,6 @@ class EffectInteraction:
         return self.largest.change > 2.0 * CLEAR * bound(self.largest.error)
 
 
-@dataclass
-class Computed:
-    """A run, with its table."""
-
-    record: RunRecord
-    table: dict
-    cost: RunCost
-
-
 class NoTime(UserError):
     """The budget leaves none for a run."""
 
@@ -147,13 +141,6 @@ def own_memory(record):
     return record.number("peak_memory_MB") - record.number("first_memory_MB")
 
 
-def with_choices(program, files, overrides):
-    """The overrides with what `automatic' stands for in the scene: a variant without a
-    law or with other moduli is to differ by these alone."""
-    chosen = Scene(program, files, overrides).about["volumetric_integration"]
-    return [*overrides, f"Material/Volumetric integration={chosen}"]
-
-
 class EffectsStudy:
     """The study of the effects of the scene that files and overrides give."""
 
@@ -161,7 +148,10 @@ class EffectsStudy:
         self.start = time.monotonic()
         self.program, self.files = program, [str(file) for file in files]
         self.console = console
-        self.overrides = with_choices(program, self.files, overrides)
+        # What `automatic' stands for in the scene is set: a variant without a law or with
+        # other moduli is to differ by these alone.
+        chosen = Scene(program, self.files, overrides).about["volumetric_integration"]
+        self.overrides = [*overrides, f"Material/Volumetric integration={chosen}"]
         self.scene = Scene(program, self.files, self.overrides, means=True)
         self.directory = self.scene.directory + "effects/"
         self.names = self.scene.about.get("names", {})
@@ -171,11 +161,9 @@ class EffectsStudy:
         self.results = []
         # Two of them at once, if there are two that matter.
         self.interaction = None
-        # What the budget did not reach, in words; empty if there is nothing.
-        self.left_out = ""
-        # Why the scene could not be computed.
-        self.failure = ""
-        self.of_scene, self.with_longer_steps, self.runs = {}, {}, {}
+        # What the budget did not reach, and why the scene could not be computed.
+        self.left_out = self.failure = ""
+        self.of_scene, self.with_longer_steps = {}, {}
 
     def make_runs(self, entries, directory, has_outputs=False):
         entries = [*entries, f"Output/Directory={directory}"]
@@ -188,8 +176,6 @@ class EffectsStudy:
     def runs_of(self, variant, level):
         """Runs of a variant below its own directory, compared with those of the scene
         on this level."""
-        if (variant.name, level) in self.runs:
-            return self.runs[variant.name, level]
         entries = list(variant.overrides)
         # Differences from the scene stand in the place of errors, where these are not
         # from the solution that makes the data.
@@ -200,11 +186,8 @@ class EffectsStudy:
                 "Exact solution/Stress=",
                 f"Exact solution/Reference directory={place}",
             ]
-        runs = self.make_runs(
-            entries, self.directory + variant.name, variant.has_outputs
-        )
-        self.runs[variant.name, level] = runs
-        return runs
+        directory = self.directory + variant.name
+        return self.make_runs(entries, directory, variant.has_outputs)
 
     @property
     def is_compared(self):
@@ -236,23 +219,23 @@ class EffectsStudy:
         key = self.key_of(runs, level)
         record = self.find_or_make(runs, key, expected_seconds, limit)
         seconds, memory = record.number("seconds_total"), own_memory(record)
-        cost = RunCost(seconds, 0.0, memory, 0.0)
+        run = Computed(record, runs.table(key), seconds, 0.0, memory, 0.0)
         # Once more, to know what is chance. Of long runs only the scene, whose chance
         # then stands for that of others, too.
         if seconds > SHORT_RUN and level in self.of_scene:
-            other = self.of_scene[level].cost
-            cost.seconds_chance = other.seconds_chance / other.seconds * seconds
-            cost.memory_chance = other.memory_chance
-            return Computed(record, runs.table(key), cost)
+            other = self.of_scene[level]
+            run.seconds_chance = other.seconds_chance / other.seconds * seconds
+            run.memory_chance = other.memory_chance
+            return run
         try:
             timing = key._replace(is_timing=True)
             again = self.find_or_make(runs, timing, seconds, limit)
             pairs = (seconds, again.number("seconds_total")), (memory, own_memory(again))
-            cost.seconds, cost.memory = map(min, pairs)
-            cost.seconds_chance, cost.memory_chance = (abs(a - b) for a, b in pairs)
+            run.seconds, run.memory = map(min, pairs)
+            run.seconds_chance, run.memory_chance = (abs(a - b) for a, b in pairs)
         except (NoTime, Failure):  # the first run is enough
             pass
-        return Computed(record, runs.table(key), cost)
+        return run
 
     def compute_scene(self, level):
         """The scene as it is, to be found in of_scene; whether that is possible."""
@@ -303,9 +286,9 @@ class EffectsStudy:
                 errors[i] += change.change
         elif coarser:
             errors = [c.change for c in changes_between(coarser.table, here.table)]
-        for i, change in enumerate(changes):
-            bar = here.record.number("estimate_total")
-            change.error = errors[i] if i < len(errors) else bar
+        bar = here.record.number("estimate_total")
+        for change, error in zip(changes, errors + [bar] * len(changes)):
+            change.error = error
 
     def compare(self, variant, level):
         """Compare a variant with the scene on a level: the result and the table of the
@@ -313,9 +296,8 @@ class EffectsStudy:
         self.console.status(f"{variant.effect}: {variant.instead}")
         here = self.of_scene[level]
         self.base.reference = self.key_of(self.base, level)
-        result = EffectResult(
-            variant, level, here.record.number("cells"), with_it=here.cost
-        )
+        cells = here.record.number("cells")
+        result = EffectResult(variant, level, cells, with_it=here)
         try:
             runs = self.runs_of(variant, level)
             seconds = here.record.number("seconds_total")
@@ -339,18 +321,17 @@ class EffectsStudy:
             without = "Error control/Quantity="
             if f"'{without[:-1]}'" in str(error) and without not in variant.overrides:
                 # Without the effect the scene does not have its quantity of interest.
-                self.runs.pop((variant.name, level), None)
                 other = replace(variant, overrides=[*variant.overrides, without])
                 return self.compare(other, level)
             result.failure = str(error)
             if variant.is_extreme:
                 result.verdict = NOT_COMPUTED
             return result, None
-        record, table, result.without = computed.record, computed.table, computed.cost
+        table, result.without = computed.table, computed
         if variant.has_outputs:
             # Of what the runs of studies go without.
-            result.without.seconds += record.number("seconds_output")
-            result.with_it, result.without = result.without, result.with_it
+            computed.seconds += computed.record.number("seconds_output")
+            result.with_it, result.without = computed, here
         result.changes = changes_between(here.table, table)
         size = largest_of(here.table, "energy_norm")
         if self.is_compared and size > 0.0 and not variant.changes_stiffness:
@@ -369,11 +350,9 @@ class EffectsStudy:
 
     def keep(self, result):
         """Replace what is known of the variant."""
-        names = [known.variant.name for known in self.results]
-        if result.variant.name in names:
-            self.results[names.index(result.variant.name)] = result
-        else:
-            self.results.append(result)
+        names = [*(known.variant.name for known in self.results), result.variant.name]
+        place = names.index(result.variant.name)
+        self.results[place : place + 1] = [result]
 
         def order(of):
             size = of.decisive.change if not of.failure else 1e300
@@ -395,7 +374,7 @@ class EffectsStudy:
                 or (result.failure and level < 0 and not result.is_too_slow)
             ):
                 undecided.append(variant)
-            self.write(False)
+            write_effects(self, False)
         return undecided
 
     def judge_all(self):
@@ -454,25 +433,22 @@ class EffectsStudy:
             and not result.variant.is_load
             and result.verdict == CALLED_FOR
         ]
-        first = next(iter(candidates), None)
-        second = next(
-            (r for r in candidates[1:] if not first.variant.excludes(r.variant)), None
+        others = (
+            r for r in candidates[1:] if not candidates[0].variant.excludes(r.variant)
         )
+        second = next(others, None)
         if not second:
             return
-        level = max(first.level, second.level)
+        level = max(candidates[0].level, second.level)
+        pair = candidates[0].variant, second.variant
         results, tables = [], []
-        for variant in (
-            first.variant,
-            second.variant,
-            both(first.variant, second.variant),
-        ):
+        for variant in (*pair, both(*pair)):
             result, table = self.compare(variant, level)
             if not result or result.failure:
                 return
             results.append(result)
             tables.append(table)
-        total = EffectResult(first.variant, level)
+        total = EffectResult(pair[0], level)
         total.changes = interactions(self.of_scene[level].table, *tables)
         self.add_errors(total.changes, level)
         judge(total, error_of_iterations(tables[0], tables[2]))
@@ -484,8 +460,5 @@ class EffectsStudy:
         self.base.lock_directory()
         self.judge_all()
         self.find_interaction()
-        self.write(True)
+        write_effects(self, True)
         self.console.say(effects_in_words(self) + f"Results in {self.directory}")
-
-    def write(self, is_finished):
-        write_effects(self, is_finished)

@@ -46,56 +46,46 @@ class PlannedRun:
     # Why there is no record and will be none.
     skipped: str = ""
 
-    @property
-    def is_missing(self):
-        return self.record is None and not self.skipped
-
 
 class Study:
     """The study that the scene of these runs asks for."""
 
     def __init__(self, runs, console):
-        self.runs, self.console, scene = runs, console, runs.scene
-        self.directory = runs.directory
-        self.start = time.monotonic()
-        self.last_report = 0.0
+        self.runs, self.console, self.scene = runs, console, runs.scene
+        self.directory, scene = runs.directory, runs.scene
+        self.start, self.last_report = time.monotonic(), 0.0
         self.budget = scene.budget
         self.ladders = scene.items("Study/Ladders") or ["both"]
         self.reference_strategy = "tolerance" if scene.has_tolerance else "uniform"
-        self.strategies = scene.items("Study/Strategies") or [self.reference_strategy]
-        self.schemes = scene.items("Study/Time schemes") or [scene["Time/Scheme"]]
-        self.histories = scene.items("Study/Stress histories") or [
-            scene["Material/Stress history"]
-        ]
+        strategies = scene.items("Study/Strategies") or [self.reference_strategy]
+        own = scene.key().variant
+        schemes = scene.items("Study/Time schemes") or [own.scheme]
+        histories = scene.items("Study/Stress histories") or [own.history]
+        choices = itertools.product(strategies, schemes, histories)
+        self.planned_variants = [MethodVariant(*choice) for choice in choices]
         self.wanted_levels = self.n_levels = int(scene.number("Study/Levels"))
         # Runs that only tell what they cost, by method variant.
         self.timings = {}
         # Seconds that runs have taken beyond their steps, above all to start.
         self.overheads = []
-        if "tolerance" in self.strategies and not scene.has_tolerance:
+        if "tolerance" in strategies and not scene.has_tolerance:
             raise UserError(
                 "'Study/Strategies' has tolerance, but the scene has none to begin "
                 "with; set 'Error control/Tolerance', or take uniform or adaptive."
             )
-        if (
-            not scene.has_exact_solution
-            and not scene.has_tolerance
-            and self.n_levels < FEWEST_LEVELS
-        ):
+        needs_levels = not (scene.has_exact_solution or scene.has_tolerance)
+        if needs_levels and self.n_levels < FEWEST_LEVELS:
             raise UserError(
                 f"'Study/Levels' = {self.n_levels} is too few for a scene without an "
                 "exact solution: whether its finest run can serve as a reference shows "
                 "only in three levels; take at least 3, or give 'Exact solution' or "
                 "'Error control/Tolerance'."
             )
-        choices = self.strategies, self.schemes, self.histories
-        self.all_variants = [MethodVariant(*c) for c in itertools.product(*choices)]
         # Of schemes and histories the program knows the names.
-        for variant in self.all_variants:
-            own = MethodVariant(variant.strategy, *scene.key().variant[1:])
-            if variant != own and variant.strategy == self.strategies[0]:
-                scheme, history = f"Time/Scheme={variant.scheme}", variant.history
-                entries = [scheme, f"Material/Stress history={history}"]
+        for method in itertools.product(schemes, histories):
+            if method != own[1:]:
+                names = "Time/Scheme", "Material/Stress history"
+                entries = [f"{name}={value}" for name, value in zip(names, method)]
                 Scene(runs.program, runs.files, runs.overrides + entries)
         self.make_plan()
 
@@ -103,46 +93,41 @@ class Study:
         """The runs of a method variant in a ladder, as levels of mesh and time."""
         finest = self.n_levels - 1
         if strategy == "tolerance":
-            coarsest = min(0, self.runs.scene.coarsest_tolerance_level())
+            coarsest = min(0, self.scene.coarsest_tolerance_level())
             levels = range(max(-finest, coarsest), 1)
             return [(level, level) for level in levels] if ladder == "both" else []
-        if ladder not in self.ladders:
-            return []
-        return [
-            (
-                finest if ladder == "time" else level,
-                finest if ladder == "space" else level,
-            )
-            for level in range(self.n_levels)
-        ]
+        levels = range(self.n_levels) if ladder in self.ladders else ()
+        mesh, steps = ladder != "time", ladder != "space"
+        return [(i if mesh else finest, i if steps else finest) for i in levels]
 
     def make_plan(self):
         """Decide which runs there are, the cheapest first."""
-        scene, finest, planned = self.runs.scene, self.n_levels - 1, {}
+        scene, finest, planned = self.scene, self.n_levels - 1, {}
 
         def add(variant, level, ladder, time_level=None):
             key = RunKey(variant, level, level if time_level is None else time_level)
             planned.setdefault(key, PlannedRun(key)).ladders.add(ladder)
             return planned[key]
 
-        for variant in self.all_variants:
+        for variant in self.planned_variants:
             for ladder in LADDERS:
                 for mesh_level, time_level in self.levels_of(variant.strategy, ladder):
                     add(variant, mesh_level, ladder, time_level)
         if not scene.has_exact_solution:
-            # A scene with a tolerance has the scheme that is the best for it.
-            is_uniform, own = self.reference_strategy == "uniform", scene["Time/Scheme"]
-            scheme = self.schemes[0] if is_uniform or own not in self.schemes else own
-            first = MethodVariant(self.reference_strategy, scheme, self.histories[0])
-            last = finest if is_uniform else 0
-            if is_uniform:
-                for level in (last - 1, last):
-                    add(first, level, "both")
-            elif "tolerance" not in self.strategies:
+            _, scheme, history = self.planned_variants[0]
+            strategies, schemes, _ = zip(*self.planned_variants)
+            last, before = finest, [finest - 1, finest]
+            if scene.has_tolerance:
                 # Two that tell how long it will take.
-                for level in (last - 3, last - 2):
-                    if level >= scene.coarsest_tolerance_level():
-                        add(first, level, "both")
+                coarsest, last = scene.coarsest_tolerance_level(), 0
+                before = [level for level in (-3, -2) if level >= coarsest]
+                before = [] if "tolerance" in strategies else before
+                # A scene with a tolerance has the scheme that is the best for it.
+                own = scene["Time/Scheme"]
+                scheme = own if own in schemes else scheme
+            first = MethodVariant(self.reference_strategy, scheme, history)
+            for level in before:
+                add(first, level, "both")
             add(first, last + 1, "both").is_reference = True
 
         def work(run):
@@ -161,7 +146,7 @@ class Study:
         return [run.record for run in self.plan if run.record]
 
     def missing(self):
-        return [run for run in self.plan if run.is_missing]
+        return [run for run in self.plan if not run.record and not run.skipped]
 
     def reference(self):
         """What quantities are compared with: the reference run, or the finest
@@ -182,12 +167,8 @@ class Study:
 
     def variants(self):
         """Those of which there are finished runs, in the order of the plan."""
-        found = (
-            run.key.variant
-            for run in self.plan
-            if run.record and not run.is_reference
-        )
-        return list(dict.fromkeys(found))
+        found = [run for run in self.plan if run.record and not run.is_reference]
+        return list(dict.fromkeys(run.key.variant for run in found))
 
     def levels_in_words(self):
         """Why the ladders have fewer levels than `Study/Levels'; empty if they do
@@ -209,24 +190,18 @@ class Study:
     def expected_seconds(self, key):
         """What a run will take with its start, from those that are finished; not a
         number if that cannot be known yet."""
-        overhead = sum(self.overheads) / max(1, len(self.overheads))
-        return self.seconds_of_run(key) + overhead
-
-    def seconds_of_run(self, key):
-        scene, variant, records = self.runs.scene, key.variant, self.records()
-        to_tolerance = variant.strategy == "tolerance"
+        scene, variant, records = self.scene, key.variant, self.records()
         # Those of the same variant, or else as similar as there are.
-        known = (
-            of_variant(records, variant)
-            or [r for r in records if r.key.variant.strategy == variant.strategy]
-            or [r for r in records if r.key.variant.strategy != "tolerance"]
-        )
-        if not known or (to_tolerance and known[0].key.variant.strategy != "tolerance"):
+        alike = [r for r in records if r.key.variant.strategy == variant.strategy]
+        known = of_variant(records, variant) or alike
+        overhead = sum(self.overheads) / max(1, len(self.overheads))
+        if variant.strategy != "tolerance":
+            known = known or [r for r in records if r.key.variant.strategy != "tolerance"]
+            return cost_of_run(scene, known, key)[0] + overhead if known else nan
+        if not known:
             return nan
-        if not to_tolerance:
-            return cost_of_run(scene, known, key)[0]
         model = fit_tolerance_runs(scene, known, "estimate_total", None)
-        return model.predict(scene.tolerance(key)).seconds
+        return model.predict(scene.tolerance(key)).seconds + overhead
 
     def seconds_left(self):
         """What the runs that are missing will take; not a number if that of some
@@ -241,20 +216,20 @@ class Study:
         """Make a run unless it takes too long."""
         name, seconds = self.runs.name(run.key), self.expected_seconds(run.key)
         run.record = None  # such as that of a coarse run before there was a reference
-        is_known, left = isfinite(seconds), self.left()
-        if (seconds if is_known else 0.0) > left:
+        left, about = self.left(), ""
+        if isfinite(seconds):
+            about = f"about {seconds_in_words(seconds)}"
+        if (seconds if about else 0.0) > left:
             run.skipped = (
                 f"{seconds_in_words(max(0.0, left))} of 'Study/Budget' = "
                 f"{seconds_in_words(self.budget)} were left"
             )
-            if is_known:
-                about = seconds_in_words(seconds)
-                run.skipped = f"would take about {about}, and {run.skipped}"
-            it = " it" if is_known else ""
+            if about:
+                run.skipped = f"would take {about}, and {run.skipped}"
+            it = " it" if about else ""
             self.console.say(f"{name}: left out,{it} {run.skipped}")
             return
-        about = f", about {seconds_in_words(seconds)}" if is_known else ""
-        self.console.status(f"{name}: running{about}")
+        self.console.status(f"{name}: running" + (f", {about}" if about else ""))
         start = self.elapsed()
         try:
             run.record = self.runs.make(run.key, f"the study in the run {name}")
@@ -302,25 +277,21 @@ class Study:
             if result.variant.strategy == "tolerance":
                 continue
             wanted = [price for price in result.prices if price.run]
-            mesh_level = max((price.run.mesh_level for price in wanted), default=0)
+            levels = [0, *(price.run.mesh_level for price in wanted)]
             in_budget = [price.run.seconds for price in wanted if price.is_in_budget]
-            spent = seconds_of(result.records)
-            seconds = seconds_for_timing(spent, max(in_budget, default=0.0))
+            most = max(in_budget, default=0.0)
+            seconds = seconds_for_timing(seconds_of(result.records), most)
+            seconds = min(seconds, self.left())
             found = self.timings[result.variant] = []
-            make_timing_runs(
-                self.runs,
-                result.records,
-                max(0, mesh_level),
-                min(seconds, self.left()),
-                found,
-                f"the study in the run for timing of {result.variant.name}",
-                self.console,
-            )
+            what = f"the study in the run for timing of {result.variant.name}"
+            of_runs = self.runs, result.records, max(levels), seconds, found, what
+            make_timing_runs(*of_runs, self.console)
             for record in found:
                 self.announce(record)
 
-    def can_take_fewer_levels(self):
-        return self.reference_strategy != "tolerance" and self.n_levels > FEWEST_LEVELS
+    def must_take_fewer_levels(self):
+        can_be = not self.scene.has_tolerance and self.n_levels > FEWEST_LEVELS
+        return can_be and self.seconds_left() > self.left()
 
     def make_first_runs(self):
         """Make the coarse runs without a reference that tell how long the reference
@@ -328,19 +299,12 @@ class Study:
         last = self.plan[-1].key
         self.find_finished()
         for run in self.plan:
-            if (
-                run.record is None
-                and run.key.variant == last.variant
-                and run.key.mesh_level == run.key.time_level
-                and run.key.mesh_level + 2 < last.mesh_level
-            ):
+            variant, mesh_level, time_level, _ = run.key
+            is_coarse = mesh_level == time_level < last.mesh_level - 2
+            if run.record is None and variant == last.variant and is_coarse:
                 self.make(run)
                 # Two tell that there will have to be fewer levels.
-                if (
-                    len(self.records()) >= 2
-                    and self.can_take_fewer_levels()
-                    and self.seconds_left() > self.left()
-                ):
+                if len(self.records()) >= 2 and self.must_take_fewer_levels():
                     return
 
     def find_reference(self):
@@ -353,7 +317,7 @@ class Study:
             # Of fewer levels, as those of an earlier call may be, unless the budget
             # reaches further now: the next one has twice the steps on 2^dim times the
             # cells, and all other runs take about as long as it.
-            next_one = 2.0 ** (self.runs.scene.dimension + 2)
+            next_one = 2.0 ** (self.scene.dimension + 2)
             if record and (
                 self.n_levels == self.wanted_levels
                 or next_one * record.number("seconds_total") > self.budget
@@ -361,7 +325,7 @@ class Study:
                 if self.n_levels < self.wanted_levels:
                     self.console.say(self.levels_in_words())
                 return True
-            if self.reference_strategy == "tolerance":
+            if self.scene.has_tolerance:
                 break
             self.n_levels -= 1
         self.n_levels = self.wanted_levels
@@ -381,7 +345,7 @@ class Study:
                 return
             self.runs.reference = None
             self.make_first_runs()
-            if not self.can_take_fewer_levels() or not self.seconds_left() > self.left():
+            if not self.must_take_fewer_levels():
                 break
             self.n_levels -= 1
             self.make_plan()
@@ -398,7 +362,7 @@ class Study:
         """Make what is missing. Raises Interrupted, and UserError if not a single run
         could be computed."""
         self.runs.lock_directory()
-        self.console.say(f"Study of {self.runs.scene.file}: {len(self.plan)} runs")
+        self.console.say(f"Study of {self.scene.file}: {len(self.plan)} runs")
         try:
             self.make_all()
         except Interrupted:
@@ -411,7 +375,7 @@ class Study:
         )
 
     def make_all(self):
-        if not self.runs.scene.has_exact_solution:
+        if not self.scene.has_exact_solution:
             self.make_reference()
         self.find_finished()
         if self.records():

@@ -173,8 +173,8 @@ def error_in_words(result, k):
             f"The runs refine h and {k} together, so that their parts cannot be told "
             "apart; half of the error is given to each. "
         )
-    exponents = {"p, that of h,": error.p_is_fitted, f"q, that of {k},": error.q_is_fitted}
-    for name, is_fitted in exponents.items():
+    exponents = ("p, that of h,", error.p_is_fitted), (f"q, that of {k},", error.q_is_fitted)
+    for name, is_fitted in exponents:
         if not is_fitted:
             text += (
                 f"The exponent {name} does not show in these runs and is the "

@@ -198,10 +198,9 @@ class WorkPrecisionModel:
         # A scan over the part of the error that the mesh may have.
         for i in range(1, 400):
             part = i / 400.0 * tolerance
+            h, rest = self.h * 2.0**self.coarsest_level, tolerance
             if error.c_1 > 0.0:
-                h, rest = (part / error.c_1) ** (1.0 / error.p), error.rest(tolerance, part)
-            else:
-                h, rest = self.h * 2.0**self.coarsest_level, tolerance
+                h, rest = (part / error.c_1) ** (1.0 / error.p), error.rest(rest, part)
             lowest = min(lowest, self.seconds(h, self.step_for(rest)))
         return lowest
 

@@ -67,70 +67,48 @@ def replace_file(path, text):
         raise UserError(f"'{path}' cannot be written: {error.strerror}.") from error
 
 
-class DirectoryLock:
-    """Keeps other processes out of a directory that this one writes into, as the
-    program does: the lock vanishes with the process, however that ends. Without one
-    goes on where there is none to be had."""
-
-    def __init__(self, directory):
-        self.path, self.file = Path(directory) / "viscoplastic_contact.lock", None
-        try:
-            while True:
-                file = open(self.path, "a")
-                fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
-                # Who has had the lock removes the file: then it is made again.
-                if self.path.exists() and os.path.samestat(
-                    os.fstat(file.fileno()), self.path.stat()
-                ):
-                    break
-                file.close()
-            self.file = file
-        except BlockingIOError:
-            file.close()
-            raise UserError(
-                f"Another run is writing into '{directory}'; wait until it has ended, "
-                "or choose another 'Output/Directory' and 'Checkpoint/Directory'."
-            ) from None
-        except OSError:
-            pass
-
-    def __del__(self):
-        if self.file:
-            self.path.unlink(missing_ok=True)
-            self.file.close()
+def lock(directory):
+    """Keep other processes out of a directory that this one writes into, until the file
+    that is returned is closed, be it by the end of the process. None where there are no
+    locks to be had."""
+    try:
+        file = open(Path(directory) / "viscoplastic_contact.lock", "a")
+        fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        return file
+    except BlockingIOError:
+        raise UserError(
+            f"Another run is writing into '{directory}'; wait until it has ended, "
+            "or choose another 'Output/Directory' and 'Checkpoint/Directory'."
+        ) from None
+    except OSError:
+        return None
 
 
 class StudyRuns:
     """The runs of the scene that files and overrides (`Section/Entry=value') give.
 
     With may_subdivide, runs divide given steps beyond the stability limit where the
-    scene does; otherwise they have the given steps, or fail. With has_outputs they
+    scene does; otherwise they have the given steps, or fail. With outputs they
     write fields and checkpoints as the scene does. Reference is the key of the run
     that writes its fields, and with whose fields those of all others are compared,
     if any; records of runs that have been compared with another one, or none, do
     not count as finished."""
 
     def __init__(
-        self,
-        program,
-        files,
-        overrides,
-        scene=None,
-        may_subdivide=False,
-        has_outputs=False,
+        self, program, files, overrides, scene=None, may_subdivide=False, outputs=False
     ):
         self.program = program
         self.files, self.overrides = [str(file) for file in files], list(overrides)
         self.scene = scene or Scene(program, self.files, self.overrides)
         self.directory = self.scene.directory + "study/"
-        self.may_subdivide, self.has_outputs = may_subdivide, has_outputs
+        self.may_subdivide, self.has_outputs = may_subdivide, outputs
         self.reference = None
         self.lock = None
 
     def lock_directory(self):
         """Make the directory of the study, and keep other studies out of it."""
         make_directory(self.directory)
-        self.lock = self.lock or DirectoryLock(self.directory)
+        self.lock = self.lock or lock(self.directory)
 
     def name(self, key):
         return self.scene.name(key)

@@ -159,7 +159,18 @@ class Program:
     def run(self, scene, directory, overrides=None, restart=False, log=None):
         """The Results of a run, which go to this directory. With restart it goes
         on from a checkpoint if there is one; messages go to the file log."""
-        self.compute(scene, directory, overrides, restart, log)
+        directory = Path(directory).resolve()
+        directory.mkdir(parents=True, exist_ok=True)
+        arguments = [
+            *parameter_files(scene, directory),
+            *set_options({**(overrides or {}), "Output/Directory": directory}),
+            *(["--restart=auto"] if restart else []),
+        ]
+        if log is None:
+            self.call("--quiet", *arguments, stdout=subprocess.DEVNULL)
+        else:
+            with open(log, "w", encoding="utf-8") as file:
+                self.call(*arguments, stdout=file)
         return Results(directory)
 
     def study(self, scene, directory, overrides=None, log=None):
@@ -185,20 +196,6 @@ class Program:
         """The files and entries of a study."""
         entries = {**(overrides or {}), "Output/Directory": Path(directory).resolve()}
         return parameter_files(scene, directory), set_options(entries)[1::2]
-
-    def compute(self, scene, directory, overrides, restart, log):
-        directory = Path(directory).resolve()
-        directory.mkdir(parents=True, exist_ok=True)
-        arguments = [
-            *parameter_files(scene, directory),
-            *set_options({**(overrides or {}), "Output/Directory": directory}),
-            *(["--restart=auto"] if restart else []),
-        ]
-        if log is None:
-            self.call("--quiet", *arguments, stdout=subprocess.DEVNULL)
-            return
-        with open(log, "w", encoding="utf-8") as file:
-            self.call(*arguments, stdout=file)
 
 
 def parameter_files(scene, directory):

@@ -9,12 +9,12 @@ They stand on
 
     scene, runs        what the program says of a scene; its runs and their records
     record, histories  numbers of a finished run, and their differences
-    fit, cost, tolerance, price, analysis
+    fit, cost, price, analysis, timing
                        laws of errors and costs, and what follows from them
     variants           what can be left out of a scene
-    report, markdown, effects_report
+    report, markdown, effects_report, words
                        tables and sentences
 
 Needs numpy and scipy. pandas is not used: tables are columns of numbers, which NumPy
-and csv read and write, and it would be one more package to install.
+reads, and it would be one more package to install.
 """

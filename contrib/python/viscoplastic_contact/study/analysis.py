@@ -3,12 +3,11 @@
 
 from math import isfinite, log2, nan, sqrt
 from operator import add
-from typing import NamedTuple
 
 from .cost import CostSample, fit_cost
 from .fit import Finer, Prior, fit_error, fit_error_parts, fit_two_powers
 from .price import ToleranceSample, WorkPrecisionModel, fit_tolerance
-from .record import FIELD_ERRORS, vector_name
+from .record import FIELD_ERRORS, unit_of, vector_name
 from .scene import largest_step
 
 # What can say how large the error of a run is, the best first.
@@ -23,18 +22,6 @@ MEASURES = {
 PARTS = ("space", "initial", "time")
 
 
-def kind_of(quantity):
-    """What has the same unit."""
-    for words, kind in (
-        (("force", "reaction"), "force"),
-        (("dissipation", "energy"), "energy"),
-        (("point", "displacement"), "length"),
-    ):
-        if any(word in quantity for word in words):
-            return kind
-    return quantity
-
-
 def size_of(record, quantity):
     """The size of a quantity; for a component that of its vector. Zero for what
     only rounding keeps from being that."""
@@ -46,9 +33,8 @@ def size_of(record, quantity):
         if name == quantity
         or (vector_name(name) == vector and vector not in (name, quantity))
     )
-    kind = kind_of(quantity)
-    alike = (abs(value) for name, value in known.items() if kind_of(name) == kind)
-    size = sqrt(square)
+    unit, size = unit_of(quantity) or quantity, sqrt(square)
+    alike = (abs(v) for name, v in known.items() if (unit_of(name) or name) == unit)
     return size if size > 1e-9 * max(alike, default=0.0) else 0.0
 
 
@@ -70,8 +56,8 @@ def error_of(record, measure, reference):
         return record.number(measure)
     if measure != "quantities":
         return quantity_error(record, measure.rsplit("_error", 1)[0], reference)
-    errors = [quantity_error(record, name, reference) for name in record.quantities]
-    return max((error for error in errors if isfinite(error)), default=nan)
+    errors = (quantity_error(record, name, reference) for name in record.quantities)
+    return max(filter(isfinite, errors), default=nan)
 
 
 def best_measure(records, reference, n_least=3):
@@ -226,24 +212,12 @@ def fit_tolerance_runs(scene, records, measure, reference):
     return model
 
 
-class Richardson(NamedTuple):
-    """Richardson extrapolation of three values, on meshes and with steps that halve
-    each time. The error is that of the last value, relative to the size of the
-    quantity. The last value can serve as a reference if the differences shrink with
-    an order between 1/2 and 3."""
-
-    quantity: str
-    values: list
-    order: float
-    extrapolated: float
-    error: float
-    is_trustworthy: bool
-
-
 def extrapolate(runs):
-    """The extrapolation of every quantity of interest, of three runs from coarse to
-    fine."""
-    result = []
+    """Richardson extrapolation of every quantity of interest, of three runs on meshes and
+    with steps that halve each time: its name, the three values, their order, the
+    extrapolated value, the error of the last value relative to the size of the quantity,
+    and whether that can serve as a reference, as differences shrink with an order between
+    1/2 and 3."""
     for name in runs[2].quantities:
         values = [run.quantity(name) for run in runs]
         first, last = values[1] - values[0], values[2] - values[1]
@@ -251,12 +225,11 @@ def extrapolate(runs):
         if not size > 0.0:
             continue
         if not abs(last) > 1e-12 * size:  # nothing left to converge
-            result.append(Richardson(name, values, nan, values[2], 0.0, True))
+            yield name, values, nan, values[2], 0.0, True
             continue
         ratio = first / last
         order = log2(ratio) if ratio > 0.0 else nan
         is_good = 0.5 <= order <= 3.0
         extrapolated = values[2] + last / (ratio - 1.0) if is_good else nan
         error = abs(extrapolated - values[2] if is_good else last) / size
-        result.append(Richardson(name, values, order, extrapolated, error, is_good))
-    return result
+        yield name, values, order, extrapolated, error, is_good

@@ -8,15 +8,8 @@ import math
 from dataclasses import dataclass, field, replace
 from typing import NamedTuple
 
-from .fit import (
-    Misfit,
-    Prior,
-    TwoPowers,
-    fit_line,
-    fit_two_powers,
-    log_ratio,
-    misfit_of,
-)
+from .fit import Misfit, Prior, TwoPowers
+from .fit import fit_line, fit_two_powers, log_ratio, misfit_of
 
 DIRECT = "direct"
 GEOMETRIC = "geometric multigrid"

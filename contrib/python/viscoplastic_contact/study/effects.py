@@ -12,15 +12,8 @@ from math import inf, nan
 
 from ..tables import UserError
 from .effects_report import effects_in_words, write_effects
-from .histories import (
-    QuantityChange,
-    bound,
-    changes_between,
-    contact_force_of,
-    error_of_iterations,
-    interactions,
-    largest_of,
-)
+from .histories import QuantityChange, bound, changes_between, contact_force_of
+from .histories import error_of_iterations, interactions, largest_of
 from .record import RunRecord
 from .runs import Failure, Interrupted, StudyRuns, TooSlow
 from .scene import Scene
@@ -84,10 +77,6 @@ class EffectResult:
     failure: str = ""
     is_too_slow: bool = False
 
-    @property
-    def is_open(self):
-        return self.verdict in (BELOW_THE_ERROR, AS_LARGE_AS_THE_ERROR)
-
     def change_of(self, quantity):
         """Not a number if there is none of this name."""
         return next((c.change for c in self.changes if c.quantity == quantity), nan)
@@ -132,7 +121,7 @@ class EffectInteraction:
         return self.largest.change > 2.0 * CLEAR * bound(self.largest.error)
 
 
-class NoTime(UserError):
+class NoTime(Failure):
     """The budget leaves none for a run."""
 
 
@@ -195,29 +184,25 @@ class EffectsStudy:
 
     def key_of(self, runs, level):
         key = runs.scene.key()._replace(mesh_level=level, time_level=level)
-        if runs.scene.has_tolerance:
-            key = key._replace(variant=key.variant._replace(strategy="tolerance"))
-        return key
+        strategy = "tolerance" if runs.scene.has_tolerance else key.variant.strategy
+        return key._replace(variant=key.variant._replace(strategy=strategy))
 
-    def is_affordable(self, seconds):
-        """Whether a run of so many seconds ends within the budget."""
-        return time.monotonic() - self.start + seconds <= self.scene.budget
+    def left(self):
+        """Seconds in the budget."""
+        return self.start + self.scene.budget - time.monotonic()
 
-    def make(self, runs, key, limit=None):
-        return runs.make(key, "the study of effects", limit)
-
-    def find_or_make(self, runs, key, expected_seconds, limit=None):
-        """The record of a run. Raises NoTime unless it can be expected to end within the
-        budget."""
+    def make(self, runs, key, expected_seconds, limit=None):
+        """The record of a run, which is computed unless it is finished already. Raises
+        NoTime unless it can be expected to end within the budget."""
         record = runs.find(key)
-        if not record and not self.is_affordable(expected_seconds):
+        if not record and expected_seconds > self.left():
             raise NoTime("its run would not end within 'Study/Budget'.")
-        return record or self.make(runs, key, limit)
+        return record or runs.make(key, "the study of effects", limit)
 
     def compute(self, runs, level, expected_seconds, limit=None):
-        """A run with its table, see find_or_make()."""
+        """A run with its table, see make()."""
         key = self.key_of(runs, level)
-        record = self.find_or_make(runs, key, expected_seconds, limit)
+        record = self.make(runs, key, expected_seconds, limit)
         seconds, memory = record.number("seconds_total"), own_memory(record)
         run = Computed(record, runs.table(key), seconds, 0.0, memory, 0.0)
         # Once more, to know what is chance. Of long runs only the scene, whose chance
@@ -229,11 +214,11 @@ class EffectsStudy:
             return run
         try:
             timing = key._replace(is_timing=True)
-            again = self.find_or_make(runs, timing, seconds, limit)
+            again = self.make(runs, timing, seconds, limit)
             pairs = (seconds, again.number("seconds_total")), (memory, own_memory(again))
             run.seconds, run.memory = map(min, pairs)
             run.seconds_chance, run.memory_chance = (abs(a - b) for a, b in pairs)
-        except (NoTime, Failure):  # the first run is enough
+        except Failure:  # the first run is enough
             pass
         return run
 
@@ -250,7 +235,7 @@ class EffectsStudy:
         self.failure = ""
         try:
             self.of_scene[level] = self.compute(self.base, level, expected)
-        except (NoTime, Failure) as failure:
+        except Failure as failure:
             self.failure = str(failure)
             return False
         if coarser and not self.scene.has_tolerance:
@@ -263,9 +248,9 @@ class EffectsStudy:
         key = self.key_of(self.base, level)._replace(time_level=level - 1)
         seconds = self.of_scene[level].record.number("seconds_total")
         try:
-            self.find_or_make(self.base, key, 0.5 * seconds)
+            self.make(self.base, key, 0.5 * seconds)
             self.with_longer_steps[level] = self.base.table(key)
-        except (NoTime, Failure):
+        except Failure:
             pass
 
     def add_errors(self, changes, level):
@@ -279,13 +264,12 @@ class EffectsStudy:
         if coarser and coarser.record.number("cells") > LARGEST_COARSER * cells:
             coarser = None
         errors = []
-        if coarser and longer:
-            of_mesh = changes_between(coarser.table, longer)
-            errors = [change.change for change in changes_between(longer, here.table)]
-            for i, change in enumerate(of_mesh[: len(errors)]):
-                errors[i] += change.change
-        elif coarser:
-            errors = [c.change for c in changes_between(coarser.table, here.table)]
+        if coarser:
+            # Without a run with longer steps both are halved at once.
+            runs = [run for run in (coarser.table, longer, here.table) if run]
+            pairs = [changes_between(*pair) for pair in zip(runs, runs[1:])]
+            shares = zip(*([change.change for change in of_pair] for of_pair in pairs))
+            errors = list(map(sum, shares))
         bar = here.record.number("estimate_total")
         for change, error in zip(changes, errors + [bar] * len(changes)):
             change.error = error
@@ -302,7 +286,7 @@ class EffectsStudy:
             runs = self.runs_of(variant, level)
             seconds = here.record.number("seconds_total")
             limit = max(LEAST_LIMIT, MOST_TIMES * seconds)
-            rest = max(LEAST_LIMIT, self.start + self.scene.budget - time.monotonic())
+            rest = max(LEAST_LIMIT, self.left())
             computed = self.compute(runs, level, seconds, min(limit, rest))
         except Interrupted:
             raise
@@ -334,19 +318,13 @@ class EffectsStudy:
             result.with_it, result.without = computed, here
         result.changes = changes_between(here.table, table)
         size = largest_of(here.table, "energy_norm")
-        if self.is_compared and size > 0.0 and not variant.changes_stiffness:
+        # Energy norms of a body and a rigid one cannot be compared.
+        if self.is_compared and size > 0.0 and variant.instead != "rigid":
             distance = largest_of(table, "error_energy") / size
             result.changes.append(QuantityChange("energy_norm", distance))
         self.add_errors(result.changes, level)
         judge(result, error_of_iterations(here.table, table))
         return result, table
-
-    def levels(self):
-        if self.scene.has_tolerance:
-            coarsest = max(-3, self.base.scene.coarsest_tolerance_level())
-        else:
-            coarsest = -min(2, self.base.scene.n_coarser_meshes())
-        return list(range(min(0, coarsest), 1))
 
     def keep(self, result):
         """Replace what is known of the variant."""
@@ -370,7 +348,7 @@ class EffectsStudy:
             # What cannot be computed here may be so with smaller steps.
             if (
                 not result
-                or result.is_open
+                or result.verdict in (BELOW_THE_ERROR, AS_LARGE_AS_THE_ERROR)
                 or (result.failure and level < 0 and not result.is_too_slow)
             ):
                 undecided.append(variant)
@@ -379,7 +357,11 @@ class EffectsStudy:
 
     def judge_all(self):
         """Judge all variants, on as fine levels as they need."""
-        levels, variants = self.levels(), []
+        scene, variants = self.base.scene, []
+        coarsest = -min(2, scene.n_coarser_meshes())
+        if scene.has_tolerance:
+            coarsest = max(-3, scene.coarsest_tolerance_level())
+        levels = range(min(0, coarsest), 1)
         for level in levels:
             has_coarser = level - 1 in self.of_scene
             if not self.compute_scene(level):

@@ -2,6 +2,7 @@
 """What the study of effects writes: effects.csv, a row for each quantity of each
 simplification; effects.json; effects.md, the same for people."""
 
+import itertools
 import re
 import textwrap
 from math import isfinite, log10
@@ -61,14 +62,9 @@ def share_of_time(result, between=" +- "):
     )
 
 
-def has_changes(result):
-    """Whether there is a change to tell of."""
-    return not result.failure and result.verdict not in ("never acted", "only watches")
-
-
 def summary(result, names, nothing=""):
     """The quantity that changes most, by how much, and its error."""
-    if not has_changes(result):
+    if result.failure or result.verdict in ("never acted", "only watches"):
         return [nothing, "", ""]
     most = result.decisive
     return [in_words(most.quantity, names), percent(most.change), percent(most.error)]
@@ -162,7 +158,8 @@ def effects_in_words(study):
 
 
 def markdown(study, about):
-    text = f"# Effects of {Path(study.scene.file).stem}\n\n" + (
+    text = (
+        f"# Effects of {Path(study.scene.file).stem}\n\n"
         "What each effect changes, beside the error of the discretization, and what it "
         "costs. Changes are the largest of all times over the largest value; the "
         "quantity is that whose change is the largest in proportion to its error, which "
@@ -175,12 +172,11 @@ def markdown(study, about):
     )
     if Path(study.directory, "effects.png").exists():
         text += "![What effects change and cost](effects.png)\n\n"
-    parts = []
-    for kind in dict.fromkeys(result.variant.kind for result in study.results):
-        alike = [result for result in study.results if result.variant.kind == kind]
-        rows = [cells_of(result, study.names) for result in alike]
-        parts.append(f"## Of the {kind}\n\n{table(HEADER, rows)}")
-    text += "\n".join(parts)
+    by_kind = itertools.groupby(study.results, lambda result: result.variant.kind)
+    text += "\n".join(
+        f"## Of the {kind}\n\n" + table(HEADER, [cells_of(r, study.names) for r in alike])
+        for kind, alike in by_kind
+    )
     for result in study.results:
         if result.failure:
             text += f"\n{without(result)}: {result.failure}\n"

@@ -6,16 +6,8 @@ from math import hypot, inf
 
 import numpy as np
 
-from .record import vector_name
+from .record import unit_of, vector_name
 from .words import exact
-
-ENERGIES = (
-    "friction_dissipation",
-    "viscous_dissipation",
-    "stored_energy",
-    "external_work",
-    "thermal_work",
-)
 
 
 @dataclass
@@ -26,27 +18,6 @@ class QuantityChange:
     quantity: str
     change: float = 0.0
     error: float = 0.0
-
-
-def unit_of(quantity):
-    """Quantities of the same kind have the same unit; empty for those that do not
-    count."""
-    if quantity.startswith(("friction_force", "contact_force", "reaction_")):
-        return "force"
-    if quantity.startswith("point") or quantity == "max_displacement":
-        return "displacement"
-    if quantity in ("max_von_mises", "mean_von_mises"):
-        return "stress"
-    return "energy" if quantity in ENERGIES else ""
-
-
-def quantities_of(table):
-    """The columns of each quantity: its components, or itself."""
-    result = {}
-    for column in table:
-        if unit_of(vector_name(column)):
-            result.setdefault(vector_name(column), []).append(column)
-    return result
 
 
 def at_times_of(table, other, column):
@@ -60,40 +31,41 @@ def at_times_of(table, other, column):
 def differences(table, terms):
     """For each quantity the largest size of the sum of it and of the terms, pairs of
     another table and a sign, over the largest size of the quantity."""
-    found, largest = [], {}
-    for name, columns in quantities_of(table).items():
+    quantities = {}  # the columns of each
+    for column in table:
+        if unit_of(column):
+            quantities.setdefault(vector_name(column), []).append(column)
+
+    def largest_sum(columns, terms):
         values = np.array([table[column] for column in columns])
-        sums = values.copy()
         for other, sign in terms:
-            sums += sign * np.array([at_times_of(table, other, c) for c in columns])
+            values += sign * np.array([at_times_of(table, other, c) for c in columns])
         # NaN does not win.
-        size, change = (
-            float(np.fmax.reduce(np.sqrt((v**2).sum(axis=0)), initial=0.0))
-            for v in (values, sums)
-        )
+        return float(np.fmax.reduce(np.sqrt((values**2).sum(axis=0)), initial=0.0))
+
+    sizes = {name: largest_sum(columns, []) for name, columns in quantities.items()}
+    result = []
+    for name, columns in quantities.items():
+        change, unit = largest_sum(columns, terms), unit_of(name)
         # Under another contact law the normal force is a reaction or data.
         if name == "contact_force" and any(columns[0] not in t for t, _ in terms):
             change = 0.0
-        found.append((name, size, change))
-        largest[unit_of(name)] = max(largest.get(unit_of(name), 0.0), size)
-    result = []
-    for name, size, change in found:
         # Energies are parts of one balance: beside all of it a dissipation can be
         # negligible.
-        share = 1.0 if unit_of(name) == "energy" else 1e-3
-        size = max(size, share * largest[unit_of(name)])
+        share = 1.0 if unit == "energy" else 1e-3
+        most = max(size for other, size in sizes.items() if unit_of(other) == unit)
+        size = max(sizes[name], share * most)
         result.append(QuantityChange(name, change / size if size > 0.0 else 0.0))
     return result
 
 
 def changes_between(table, other):
     """The differences between the quantities of two runs, at the times of the first
-    and linear in between in the second: forces, displacements of points, energies and
-    dissipations, largest displacement and stress. The slipping area is none of them:
-    it jumps from point to point, in time, too. They are relative to the largest value
-    of the first, or to a thousandth of what others of the same kind reach, if that is
-    larger; energies are to the largest of them. What a run has no column for is zero,
-    but for the force of unilateral contact, which then is not compared."""
+    and linear in between in the second, relative to the largest value of the first, or to
+    a thousandth of what others of the same kind reach, if that is larger; energies are to
+    the largest of them. The slipping area is none of them: it jumps from point to point,
+    in time, too. What a run has no column for is zero, but for the force of unilateral
+    contact, which then is not compared."""
     return differences(table, [(other, -1.0)])
 
 

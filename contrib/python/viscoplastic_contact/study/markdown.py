@@ -173,8 +173,8 @@ def error_in_words(result, k):
             f"The runs refine h and {k} together, so that their parts cannot be told "
             "apart; half of the error is given to each. "
         )
-    exponents = ("p, that of h,", error.p_is_fitted), (f"q, that of {k},", error.q_is_fitted)
-    for name, is_fitted in exponents:
+    are_fitted = error.p_is_fitted, error.q_is_fitted
+    for name, is_fitted in zip(("p, that of h,", f"q, that of {k},"), are_fitted):
         if not is_fitted:
             text += (
                 f"The exponent {name} does not show in these runs and is the "
@@ -350,13 +350,13 @@ def reference_in_words(study):
         "quantity,values,order,extrapolated,error of the last,as a reference",
         (
             [
-                r.quantity,
-                ", ".join(digits(value, 5) for value in r.values),
-                number_or_dash(r.order),
-                number_or_dash(r.extrapolated, 5),
-                number_or_dash(r.error, 2),
-                "good" if r.is_trustworthy else "not to be trusted",
+                name,
+                ", ".join(digits(value, 5) for value in values),
+                number_or_dash(order),
+                number_or_dash(extrapolated, 5),
+                number_or_dash(error, 2),
+                "good" if is_good else "not to be trusted",
             ]
-            for r in extrapolate(diagonal)
+            for name, values, order, extrapolated, error, is_good in extrapolate(diagonal)
         ),
     )

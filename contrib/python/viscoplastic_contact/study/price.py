@@ -6,6 +6,7 @@ numbers."""
 import math
 from dataclasses import dataclass, field
 from math import inf, isfinite, log, nan
+from types import SimpleNamespace
 from typing import Callable, NamedTuple, Optional
 
 from .cost import CostModel, choose_solver
@@ -53,24 +54,6 @@ def price_in_words(model, price, budget):
 
 
 # With given meshes and steps
-
-
-@dataclass
-class PredictedRun:
-    """A run that could be made, and what it is expected to give and to cost; it is
-    far if h or k is below half of the smallest one that was measured."""
-
-    mesh_level: int
-    phases: list
-    h: float
-    k: float
-    steps: int
-    dofs: float
-    error: float
-    seconds: float
-    memory: float
-    solver: str
-    is_far: bool
 
 
 @dataclass
@@ -123,8 +106,9 @@ class WorkPrecisionModel:
         return self.cost.seconds(self.dofs_at(h), steps, n_set_ups)
 
     def predict(self, mesh_level, k):
-        """The run on this mesh level with steps of at most k, or to that tolerance of
-        them."""
+        """What the run on this mesh level with steps of at most k, or to that tolerance
+        of them, is expected to give and to cost; it is far if h or k is below half of the
+        smallest one that was measured."""
         h = self.h * 0.5**mesh_level
         k = min(k, self.largest_k)
         phases = scale_phases(self.phases, self.refinement_of_steps(k))
@@ -136,7 +120,7 @@ class WorkPrecisionModel:
             k = largest_step(phases)
         dofs = self.dofs_at(h)
         size = dofs, steps, self.n_set_ups(steps, n_planned)
-        return PredictedRun(
+        return SimpleNamespace(
             mesh_level=mesh_level,
             phases=phases,
             h=h,

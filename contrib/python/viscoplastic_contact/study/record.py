@@ -20,29 +20,18 @@ STRATEGIES = ("uniform", "adaptive", "tolerance")
 FIELD_ERRORS = ("error_energy", "error_h1", "error_stress", "error_multiplier")
 
 # Columns of the estimated error and its parts.
-ESTIMATE_PARTS = (
-    "estimate_space",
-    "estimate_time",
-    "estimate_algebraic",
-    "estimate_initial",
-    "estimate_total",
-)
+PARTS = "space", "time", "algebraic", "initial", "total"
+ESTIMATE_PARTS = tuple(f"estimate_{part}" for part in PARTS)
 
+TIMED = (
+    *("rate", "tangent", "load", "contact", "balance", "estimate", "output", "errors"),
+    "checkpoint",
+)
 # The phases of a run, as the program times them (results/run_summary.h), and the
 # column of study.csv for each; several phases may share one.
 PHASES = {
-    "pilot run": "seconds_set_up",
-    "set-up": "seconds_set_up",
-    "rate": "seconds_rate",
-    "tangent": "seconds_tangent",
-    "load": "seconds_load",
-    "contact": "seconds_contact",
-    "balance": "seconds_balance",
-    "estimate": "seconds_estimate",
-    "adaptation": "seconds_set_up",
-    "output": "seconds_output",
-    "errors": "seconds_errors",
-    "checkpoint": "seconds_checkpoint",
+    **dict.fromkeys(("pilot run", "set-up", "adaptation"), "seconds_set_up"),
+    **{phase: f"seconds_{phase}" for phase in TIMED},
 }
 # Neither fields nor the comparison with a solution are what a user would pay for.
 NO_COST = ("output", "errors")
@@ -113,6 +102,23 @@ class RunRecord:
 def vector_name(name):
     """"friction_force" of "friction_force_x"; others are scalars."""
     return name[:-2] if len(name) > 2 and name[-2:] in ("_x", "_y", "_z") else name
+
+
+# What has one unit, by the beginning of its name.
+UNITS = {
+    "force": ("friction_force", "contact_force", "reaction_"),
+    "displacement": ("point", "max_displacement"),
+    "stress": ("max_von_mises", "mean_von_mises"),
+    "energy": (
+        *("friction_dissipation", "viscous_dissipation", "stored_energy"),
+        *("external_work", "thermal_work"),
+    ),
+}
+
+
+def unit_of(column):
+    """The unit of a force, a displacement, a stress or an energy; else empty."""
+    return next((unit for unit, names in UNITS.items() if column.startswith(names)), "")
 
 
 # Quantities of interest, with or without _x, _y, _z.

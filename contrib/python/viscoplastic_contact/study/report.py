@@ -7,34 +7,14 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Optional, Union
 
-from .analysis import (
-    MEASURES,
-    best_measure,
-    cost_of,
-    fit_chosen_steps,
-    fit_measure,
-    fit_tolerance_runs,
-    fit_work_precision,
-    of_variant,
-    quantity_error,
-)
+from . import analysis
+from .analysis import MEASURES, of_variant, quantity_error
 from .cost import SOLVERS, choose_solver
 from .markdown import markdown
-from .price import (
-    COSTS,
-    ToleranceModel,
-    WorkPrecisionModel,
-    list_prices,
-    price_in_words,
-)
-from .record import (
-    ESTIMATE_PARTS,
-    FIELD_ERRORS,
-    PHASES,
-    MethodVariant,
-    json_text,
-    picked,
-)
+from .price import COSTS, ToleranceModel, WorkPrecisionModel
+from .price import list_prices, price_in_words
+from .record import ESTIMATE_PARTS, FIELD_ERRORS, PHASES
+from .record import MethodVariant, json_text, picked
 from .runs import replace_file
 
 # Sizes, costs and errors in study.csv.
@@ -69,16 +49,17 @@ def analyze(study):
     reference, scene, results = study.reference(), study.runs.scene, []
     for variant in study.variants():
         records = of_variant(study.records(), variant)
-        result = VariantResult(variant, records, best_measure(records, reference))
+        measure = analysis.best_measure(records, reference)
+        result = VariantResult(variant, records, measure)
         results.append(result)
         found = result.measure, reference
         if not result.measure:
             continue
         if result.is_to_tolerance:
-            result.model = fit_tolerance_runs(scene, records, *found)
+            result.model = analysis.fit_tolerance_runs(scene, records, *found)
         else:
             timed = study.timed(variant)
-            result.model = fit_work_precision(scene, records, timed, *found)
+            result.model = analysis.fit_work_precision(scene, records, timed, *found)
         result.prices = list_prices(result.model, errors, study.budget)
     return results
 
@@ -167,7 +148,7 @@ def contents(study, results, about, is_finished):
 def fits_of(study, result):
     names = [f"{name}_error" for name in study.records()[0].quantities]
     for measure in (*FIELD_ERRORS, "estimate_total", "estimate_quantity", *names):
-        fit = fit_measure(result.records, measure, study.reference())
+        fit = analysis.fit_measure(result.records, measure, study.reference())
         if fit.misfit.n_samples >= 3:
             yield {
                 "error": measure,
@@ -179,7 +160,7 @@ def fits_of(study, result):
 
 def costs_of(study, result):
     timed = study.timed(result.variant)
-    cost = cost_of(timed)
+    cost = analysis.cost_of(timed)
 
     def power(fit, names="c=c_1 a=p constant=c_2"):
         return {**picked(fit, names), "rms_of_log": fit.misfit.rms}
@@ -201,7 +182,7 @@ def costs_of(study, result):
     }
     if study.runs.scene.has_step_control:
         names = "c=c_1 q=p q_is_fitted=p_is_fitted constant=c_2"
-        found["steps"] = power(fit_chosen_steps(timed), names)
+        found["steps"] = power(analysis.fit_chosen_steps(timed), names)
     return found
 
 

@@ -171,16 +171,6 @@ class Scene:
                 n += 1
         return n
 
-    def coarser_arguments(self, factor):
-        """Those of the generator with so many times as many cells a direction."""
-        cells = [max(1, math.floor(factor * n + 0.5)) for n in self.subdivisions()]
-        rest = self["Geometry/Arguments"].split(":", 1)[1]
-        return ", ".join(map(str, cells)) + " :" + rest
-
-    def mesh_width(self, n_cells):
-        """The width that a uniform mesh with so many cells would have."""
-        return self.h * (self.n_cells / n_cells) ** (1.0 / self.dimension)
-
     def name(self, key):
         """The name of a run and of its directory."""
         text = key.variant.strategy
@@ -230,26 +220,30 @@ class Scene:
         elif not may_subdivide and self["Time/Stiffness policy"] == "subdivide":
             entries["Time/Stiffness policy"] = "refuse"
         if base + level < 0:
-            entries["Geometry/Arguments"] = self.coarser_arguments(2.0 ** (base + level))
-        if not adaptive:
-            refinement = {"Strategy": "none"}
-        else:
+            factor = 2.0 ** (base + level)
+            cells = [max(1, math.floor(factor * n + 0.5)) for n in self.subdivisions()]
+            rest = self["Geometry/Arguments"].split(":", 1)[1]
+            entries["Geometry/Arguments"] = f"{', '.join(map(str, cells))} :{rest}"
+        refinement = {"Strategy": "none"}
+        if adaptive:
             cells = self.n_cells * 2.0 ** (self.dimension * key.mesh_level)
-            refinement = {
+            refinement = {} if self.is_adaptive else self.own_refinement(n_steps(steps))
+            refinement |= {
                 "Minimal level": min(refinements, base),
                 "Maximal level": max(refinements, base + key.mesh_level + 2),
                 "Cell budget": max(1, math.floor(cells + 0.5)),
             }
-            if not self.is_adaptive:
-                refinement = {
-                    "Strategy": "residual",
-                    "Refinement fraction": 0.6,
-                    "Coarsening fraction": 0.05,
-                    "Every n steps": self.steps_per_mesh(n_steps(steps)),
-                    **refinement,
-                }
         for name, value in refinement.items():
             entries[f"Mesh refinement/{name}"] = value
+
+    def own_refinement(self, n_steps):
+        """Of adaptive runs of a scene that is not adaptive."""
+        return {
+            "Strategy": "residual",
+            "Refinement fraction": 0.6,
+            "Coarsening fraction": 0.05,
+            "Every n steps": self.steps_per_mesh(n_steps),
+        }
 
 
 def identifier(text):

@@ -48,11 +48,6 @@ class EffectVariant:
         return identifier(f"{self.effect}__{self.instead}")
 
     @property
-    def changes_stiffness(self):
-        """Whether energy norms are those of bodies that cannot be compared."""
-        return self.instead == "rigid"
-
-    @property
     def is_extreme(self):
         """Whether it has numbers that solvers may not stand, in the place of a limit."""
         return self.instead in ("rigid", "never")

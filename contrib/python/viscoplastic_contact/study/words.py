@@ -41,14 +41,11 @@ def exact(value):
     return f"{value:.17g}"
 
 
-def table_row(cells):
-    return "".join(["|", *(f" {cell} |" for cell in cells), "\n"])
-
-
 def table(head, rows):
     """In Markdown; the head is a list, or a text with commas."""
     head = head.split(",") if isinstance(head, str) else list(head)
-    return "".join(map(table_row, [head, ["---"] * len(head), *rows]))
+    rows = [head, ["---"] * len(head), *rows]
+    return "".join("| " + " | ".join(map(str, row)) + " |\n" for row in rows)
 
 
 class Console:

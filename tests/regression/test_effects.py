@@ -582,7 +582,7 @@ class Effects(TestCase):
                 with unittest.mock.patch.multiple(
                     effects, MOST_TIMES=1e-3, LEAST_LIMIT=least
                 ):
-                    result, _ = study.compare(variant, 0)
+                    result = study.compare(variant, 0)
                 self.assertIn(failure, result.failure)
                 self.assertEqual(result.verdict, "could not be computed")
 

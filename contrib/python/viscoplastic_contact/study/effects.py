@@ -275,32 +275,31 @@ class EffectsStudy:
             change.error = error
 
     def compare(self, variant, level):
-        """Compare a variant with the scene on a level: the result and the table of the
-        variant; None and None where the budget has ended the study."""
+        """The result of a variant beside the scene on a level; None where the budget has
+        ended the study."""
         self.console.status(f"{variant.effect}: {variant.instead}")
         here = self.of_scene[level]
         self.base.reference = self.key_of(self.base, level)
-        cells = here.record.number("cells")
+        cells, seconds = map(here.record.number, ("cells", "seconds_total"))
         result = EffectResult(variant, level, cells, with_it=here)
+        limit = max(LEAST_LIMIT, MOST_TIMES * seconds)
+        rest = max(LEAST_LIMIT, self.left())
         try:
             runs = self.runs_of(variant, level)
-            seconds = here.record.number("seconds_total")
-            limit = max(LEAST_LIMIT, MOST_TIMES * seconds)
-            rest = max(LEAST_LIMIT, self.left())
-            computed = self.compute(runs, level, seconds, min(limit, rest))
+            found = self.compute(runs, level, seconds, min(limit, rest))
         except Interrupted:
             raise
         except NoTime:
-            return None, None
+            return None
         except TooSlow:
             if rest < limit:
-                return None, None
+                return None
             result.is_too_slow, result.verdict = True, NOT_COMPUTED
             result.failure = (
                 f"not computed: it takes more than {MOST_TIMES} times the "
                 f"{seconds:.2g} s of the scene."
             )
-            return result, None
+            return result
         except UserError as error:  # or what is wrong with its entries
             without = "Error control/Quantity="
             if f"'{without[:-1]}'" in str(error) and without not in variant.overrides:
@@ -308,23 +307,22 @@ class EffectsStudy:
                 other = replace(variant, overrides=[*variant.overrides, without])
                 return self.compare(other, level)
             result.failure = str(error)
-            if variant.is_extreme:
-                result.verdict = NOT_COMPUTED
-            return result, None
-        table, result.without = computed.table, computed
+            result.verdict = NOT_COMPUTED if variant.is_extreme else result.verdict
+            return result
+        result.without = found
         if variant.has_outputs:
             # Of what the runs of studies go without.
-            computed.seconds += computed.record.number("seconds_output")
-            result.with_it, result.without = computed, here
-        result.changes = changes_between(here.table, table)
+            found.seconds += found.record.number("seconds_output")
+            result.with_it, result.without = found, here
+        result.changes = changes_between(here.table, found.table)
         size = largest_of(here.table, "energy_norm")
         # Energy norms of a body and a rigid one cannot be compared.
         if self.is_compared and size > 0.0 and variant.instead != "rigid":
-            distance = largest_of(table, "error_energy") / size
+            distance = largest_of(found.table, "error_energy") / size
             result.changes.append(QuantityChange("energy_norm", distance))
         self.add_errors(result.changes, level)
-        judge(result, error_of_iterations(here.table, table))
-        return result, table
+        judge(result, error_of_iterations(here.table, found.table))
+        return result
 
     def keep(self, result):
         """Replace what is known of the variant."""
@@ -342,7 +340,7 @@ class EffectsStudy:
         """Judge these variants on a level; returns those that are not settled."""
         undecided = []
         for variant in variants:
-            result, _ = self.compare(variant, level)
+            result = self.compare(variant, level)
             if result:
                 self.keep(result)
             # What cannot be computed here may be so with smaller steps.
@@ -423,13 +421,12 @@ class EffectsStudy:
             return
         level = max(candidates[0].level, second.level)
         pair = candidates[0].variant, second.variant
-        results, tables = [], []
+        results = []
         for variant in (*pair, both(*pair)):
-            result, table = self.compare(variant, level)
-            if not result or result.failure:
+            results.append(self.compare(variant, level))
+            if not results[-1] or results[-1].failure:
                 return
-            results.append(result)
-            tables.append(table)
+        tables = [result.without.table for result in results]
         total = EffectResult(pair[0], level)
         total.changes = interactions(self.of_scene[level].table, *tables)
         self.add_errors(total.changes, level)

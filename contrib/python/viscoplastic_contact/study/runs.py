@@ -62,17 +62,21 @@ def replace_file(path, text):
         raise UserError(f"'{path}' cannot be written: {error.strerror}.") from error
 
 
-def lock(directory):
-    """Keep other processes out of a directory that this one writes into, until the file
-    that is returned is closed, be it by the end of the process. None where there are no
-    locks to be had."""
+def lock(path):
+    """A file that keeps other processes out, until it is closed, be it by the end of the
+    process; who closes it removes it first. None where there are no locks to be had."""
     try:
-        file = open(Path(directory) / "viscoplastic_contact.lock", "a")
-        fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        return file
+        while True:
+            file = open(path, "a")
+            fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            # Somebody may have removed it meanwhile: then it is made again.
+            if path.exists() and os.path.samestat(os.fstat(file.fileno()), path.stat()):
+                return file
+            file.close()
     except BlockingIOError:
+        file.close()
         raise UserError(
-            f"Another run is writing into '{directory}'; wait until it has ended, "
+            f"Another run is writing into '{path.parent}/'; wait until it has ended, "
             "or choose another 'Output/Directory' and 'Checkpoint/Directory'."
         ) from None
     except OSError:
@@ -89,6 +93,8 @@ class StudyRuns:
     if any; records of runs that have been compared with another one, or none, do
     not count as finished."""
 
+    lock = None
+
     def __init__(
         self, program, files, overrides, scene=None, may_subdivide=False, outputs=False
     ):
@@ -98,12 +104,17 @@ class StudyRuns:
         self.directory = self.scene.directory + "study/"
         self.may_subdivide, self.has_outputs = may_subdivide, outputs
         self.reference = None
-        self.lock = None
 
     def lock_directory(self):
         """Make the directory of the study, and keep other studies out of it."""
         make_directory(self.directory)
-        self.lock = self.lock or lock(self.directory)
+        path = Path(self.directory) / "viscoplastic_contact.lock"
+        self.lock = self.lock or lock(path)
+
+    def __del__(self):
+        if self.lock:
+            Path(self.lock.name).unlink(missing_ok=True)
+            self.lock.close()
 
     def name(self, key):
         return self.scene.name(key)

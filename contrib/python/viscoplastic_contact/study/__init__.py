@@ -9,7 +9,7 @@ They stand on
 
     scene, runs        what the program says of a scene; its runs and their records
     record, histories  numbers of a finished run, and their differences
-    fit, cost, price, analysis, timing
+    fit, cost, price, analysis
                        laws of errors and costs, and what follows from them
     variants           what can be left out of a scene
     report, markdown, effects_report, words

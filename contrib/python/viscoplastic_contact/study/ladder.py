@@ -22,9 +22,8 @@ from ..tables import UserError
 from .analysis import cost_of_run, fit_tolerance_runs, of_variant
 from .record import MethodVariant, RunKey, RunRecord
 from .report import analyze, prices_in_words, write_report
-from .runs import Failure, Interrupted
+from .runs import Failure, Interrupted, seconds_for_timing, seconds_of
 from .scene import Scene
-from .timing import make_timing_runs, seconds_for_timing, seconds_of
 from .words import seconds_in_words
 
 LADDERS = ("space", "time", "both")
@@ -284,8 +283,8 @@ class Study:
             seconds = min(seconds, self.left())
             found = self.timings[result.variant] = []
             what = f"the study in the run for timing of {result.variant.name}"
-            of_runs = self.runs, result.records, max(levels), seconds, found, what
-            make_timing_runs(*of_runs, self.console)
+            of_runs = result.records, max(levels), seconds, found, what
+            self.runs.make_timings(*of_runs, self.console)
             for record in found:
                 self.announce(record)
 
@@ -307,50 +306,40 @@ class Study:
                 if len(self.records()) >= 2 and self.must_take_fewer_levels():
                     return
 
-    def find_reference(self):
-        """Whether there is a finished reference run, also of an earlier call that had
-        to take fewer levels; the plan has its levels then."""
-        while self.n_levels >= FEWEST_LEVELS:
-            self.make_plan()
-            self.runs.reference = self.plan[-1].key
-            record = self.runs.find(self.plan[-1].key)
-            # Of fewer levels, as those of an earlier call may be, unless the budget
-            # reaches further now: the next one has twice the steps on 2^dim times the
-            # cells, and all other runs take about as long as it.
-            next_one = 2.0 ** (self.scene.dimension + 2)
-            if record and (
-                self.n_levels == self.wanted_levels
-                or next_one * record.number("seconds_total") > self.budget
-            ):
-                if self.n_levels < self.wanted_levels:
-                    self.console.say(self.levels_in_words())
-                return True
-            if self.scene.has_tolerance:
-                break
-            self.n_levels -= 1
-        self.n_levels = self.wanted_levels
+    def find_reference(self, n_levels):
+        """The record of the reference run of so many levels, which the plan has then."""
+        self.n_levels = n_levels
         self.make_plan()
-        self.runs.reference = None
-        return False
+        self.runs.reference = self.plan[-1].key  # nothing costs more
+        return self.runs.find(self.plan[-1].key)
 
     def make_reference(self):
         """Make the reference run, if there is time for it, of fewer levels if need
-        be."""
-        if self.find_reference():
-            return
-        while True:
-            key = self.plan[-1].key  # nothing costs more
-            self.runs.reference = key
-            if self.runs.find(key):
-                return
-            self.runs.reference = None
-            self.make_first_runs()
-            if not self.must_take_fewer_levels():
+        be, unless an earlier call has made it."""
+        wanted, seconds = self.wanted_levels, "seconds_total"
+        fewest = wanted if self.scene.has_tolerance else FEWEST_LEVELS
+        # Of fewer levels unless the budget reaches further now: the next one has twice
+        # the steps on 2^dim times the cells, and all other runs take about as long as it.
+        growth = 2.0 ** (self.scene.dimension + 2)
+        for n_levels in range(wanted, fewest - 1, -1):
+            found = self.find_reference(n_levels)
+            if found and (
+                n_levels == wanted or growth * found.number(seconds) > self.budget
+            ):
                 break
-            self.n_levels -= 1
-            self.make_plan()
-        if self.n_levels < self.wanted_levels:
+        else:
+            for n_levels in range(wanted, fewest - 1, -1):
+                found = self.find_reference(n_levels)
+                if found:
+                    break
+                self.runs.reference = None
+                self.make_first_runs()
+                if not self.must_take_fewer_levels():
+                    break
+        if self.n_levels < wanted:
             self.console.say(self.levels_in_words())
+        if found:
+            return
         last = self.plan[-1]
         self.runs.reference = last.key
         self.make(last)

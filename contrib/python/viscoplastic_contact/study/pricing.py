@@ -14,9 +14,9 @@ from .analysis import MEASURES, best_measure, cost_of_run, error_of
 from .analysis import fit_tolerance_runs, fit_work_precision
 from .price import list_prices, price_in_words
 from .record import RunKey
-from .runs import Failure, Interrupted, make_directory, replace_file
+from .runs import Failure, Interrupted, is_affordable, make_directory, replace_file
+from .runs import seconds_for_timing, seconds_of
 from .scene import LARGEST_TOLERANCE, n_steps
-from .timing import is_affordable, make_timing_runs, seconds_for_timing, seconds_of
 from .words import digits, seconds_in_words
 
 # Meshes with so many cells are small enough to be pilots themselves.
@@ -257,8 +257,8 @@ class Pricing:
         timings = []
         if wanted := fit(pilots).cheapest(self.eps):
             left, what = seconds_left(wanted), "the timing runs"
-            of_runs = runs, pilots, wanted.mesh_level, left, timings, what
-            make_timing_runs(*of_runs, console)
+            of_runs = pilots, wanted.mesh_level, left, timings, what
+            runs.make_timings(*of_runs, console)
         self.say_runs(timings)
         model = fit(pilots + timings)
         return measure, model, self.say_prices(model, measure, pilots + timings)

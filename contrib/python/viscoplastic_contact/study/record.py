@@ -5,7 +5,7 @@ import json
 import math
 import re
 from dataclasses import asdict, dataclass, field, replace
-from math import inf, isfinite, nan
+from math import inf, nan
 from typing import NamedTuple
 
 import numpy as np
@@ -149,12 +149,11 @@ def relative(value, size):
 
 def make_record(key, table, costs, is_difference=False, quantity=""):
     """The numbers of a finished run, from its table and the costs in its run.json.
-    Errors are relative: the largest of all steps over the largest norm of the exact
-    solution; estimates are relative to the largest energy norm. If is_difference,
-    errors are differences to another run, at few times: then the largest norms of
-    the run itself count, too. The estimated error of a quantity of interest, if
-    there is one, is relative to its largest value. Numbers of unknowns and cells are
-    means over the steps."""
+    Errors are the largest of all steps over the largest norm of the exact solution; if
+    is_difference, they are differences to another run, at few times: then the largest
+    norms of the run itself count, too. Estimates are relative to the largest energy norm,
+    that of a quantity of interest, if there is one, to its largest value. Numbers of
+    unknowns and cells are means over the steps."""
     number = {"steps": len(table["step"]) - 1.0}  # without the initial state
     number["k"] = largest(table, "k")
     for name in ("cells", "dofs"):
@@ -211,17 +210,8 @@ def make_record(key, table, costs, is_difference=False, quantity=""):
 
 def json_text(contents):
     """With null for numbers that JSON does not have."""
-
-    def mended(value):
-        if isinstance(value, dict):
-            return {key: mended(item) for key, item in value.items()}
-        if isinstance(value, (list, tuple)):
-            return [mended(item) for item in value]
-        if isinstance(value, float) and not isfinite(value):
-            return None
-        return value
-
-    return json.dumps(mended(contents), indent=2, ensure_ascii=False) + "\n"
+    known = json.loads(json.dumps(contents), parse_constant=lambda name: None)
+    return json.dumps(known, indent=2, ensure_ascii=False) + "\n"
 
 
 def picked(source, names):

@@ -13,8 +13,10 @@ from pathlib import Path
 
 from ..scene import set_options
 from ..tables import RunError, UserError
-from .record import from_json, make_record, read_table, to_json
+from .analysis import cost_of_run
+from .record import RunKey, from_json, make_record, read_table, to_json
 from .scene import Scene
+from .words import seconds_in_words
 
 # What runs of a study go without.
 NO_OUTPUTS = (
@@ -87,11 +89,10 @@ class StudyRuns:
     """The runs of the scene that files and overrides (`Section/Entry=value') give.
 
     With may_subdivide, runs divide given steps beyond the stability limit where the
-    scene does; otherwise they have the given steps, or fail. With outputs they
-    write fields and checkpoints as the scene does. Reference is the key of the run
-    that writes its fields, and with whose fields those of all others are compared,
-    if any; records of runs that have been compared with another one, or none, do
-    not count as finished."""
+    scene does; otherwise they have the given steps, or fail. With outputs they write
+    fields and checkpoints as the scene does. Reference is the key of the run with whose
+    fields those of all others are compared, if any; records of runs that have been
+    compared with another one, or none, do not count as finished."""
 
     lock = None
 
@@ -259,3 +260,49 @@ class StudyRuns:
         if scene.has_step_control:
             numbers["step_tolerance"] = scene.step_tolerance(key)
         return record
+
+    def make_timings(self, records, mesh_level, seconds, found, what, console):
+        """Time runs of one method variant on meshes that are finer than those of its
+        records: each with half of the mesh width of the one before, up to the mesh level,
+        and with as many steps as a record has and half of the seconds left allow. Prices
+        of long runs go by these instead of by extrapolation, and learn of solvers that
+        small meshes do not have. They end where the next one would take too much. Adds
+        their records to those found; for what see make()."""
+        first, times = records[0].key, [record.key.time_level for record in records]
+        finest = max(record.key.mesh_level for record in records)
+        for level in range(finest + 1, mesh_level + 1):
+            # Long steps take more iterations than those of the run that is priced.
+            for time in range(max(times), min(times) - 1, -1):
+                key = RunKey(first.variant, level, time, is_timing=True)
+                cost = cost_of_run(self.scene, [*records, *found], key)
+                record = self.find(key)
+                if record or cost[0] <= 0.5 * seconds:
+                    break
+            if not record:
+                if not is_affordable(cost, seconds):
+                    return
+                about = seconds_in_words(cost[0])
+                console.status(f"Timing run {self.name(key)}, about {about}")
+                try:
+                    record = self.make(key, what)
+                except Failure:  # what fails tells nothing
+                    return
+            seconds -= record.number("seconds_total")
+            found.append(record)
+
+
+def is_affordable(cost, seconds):
+    """Whether seconds and memory of a run, as cost_of_run() has them, are no more than
+    so many seconds and half of the memory of this machine."""
+    memory = 0.5e-6 * os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGESIZE")
+    return cost[0] <= seconds and cost[1] <= memory
+
+
+def seconds_of(records):
+    return sum(record.number("seconds_total") for record in records)
+
+
+def seconds_for_timing(spent, price):
+    """As many as the runs have taken that there are, or a tenth of those of the run that
+    is to be priced, but one at least."""
+    return max(1.0, spent, price / 10.0)

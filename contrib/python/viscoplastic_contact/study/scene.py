@@ -41,11 +41,9 @@ def n_steps(phases):
 
 def largest_step(phases):
     """The longest step."""
-    largest = start = 0.0
-    for end, n in phases:
-        largest = max(largest, (float(end) - start) / n)
-        start = float(end)
-    return largest
+    ends = [0.0, *(float(end) for end, _ in phases)]
+    pairs = zip(ends, ends[1:], phases)
+    return max(((end - start) / n for start, end, (_, n) in pairs), default=0.0)
 
 
 class Scene:
@@ -165,10 +163,7 @@ class Scene:
         n = int(self.number("Geometry/Global refinements"))
         generator = self["Geometry/Generator"]
         if not self["Geometry/File"] and generator == "subdivided_hyper_rectangle":
-            fewest = min(self.subdivisions())
-            while fewest >= 2:
-                fewest = (fewest + 1) // 2
-                n += 1
+            n += (min(self.subdivisions()) - 1).bit_length()
         return n
 
     def name(self, key):

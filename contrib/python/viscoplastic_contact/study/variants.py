@@ -405,11 +405,7 @@ class Variants:
 
 
 def effect_variants(scene, typical_stress, contact_force=""):
-    """The simplifications that a scene (with means) allows, in the order of its
-    sections: flow and each part of a law, anisotropy, differences between materials,
-    friction (none, or so much that nothing slips), motion of the foundation, each
-    load, the initial state, changes of each datum over space and time; then the
-    choices of the discretization, and what only watches.
+    """The simplifications that a scene (with means) allows, of the problem first.
 
     Typical stress: a von Mises stress at which a power law and a linear one are to
     flow at the same rate. Contact force: the size of the force of unilateral contact,

@@ -1,16 +1,10 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Refinement studies: ladders of runs of one scene, as its section `Study'
-describes them, and what follows from them: study.csv, study.json and study.md.
+"""Refinement studies: ladders of runs of one scene, as its section `Study' describes
+them (doc/study.md), and what follows from them: study.csv, study.json and study.md.
 
-The ladder `space' refines the mesh with the steps of the finest level of the study,
-`time' the steps on its finest mesh, `both' both; so that the part of the error that
-a ladder leaves alone is the smallest that the study has, and they share the finest
-run. Runs to a tolerance, which choose meshes and steps themselves, are a ladder
-`both' that halves the tolerance down to that of the scene. A scene without an exact
-solution gets a reference run one level finer in both (with runs to a tolerance: to
-half of the scene's), which comes before those that are compared with it; a few
-coarse runs tell whether it fits into the budget. If it does not, the study has
-fewer levels, but three at least."""
+A scene without an exact solution gets a reference run, which comes before those that are
+compared with it; a few coarse runs tell whether it fits into the budget. If it does not,
+the study has fewer levels, but three at least."""
 
 import itertools
 import time
@@ -151,13 +145,14 @@ class Study:
         """What quantities are compared with: the reference run, or the finest
         finished uniform run in its place; None if there is none."""
         finished = [run for run in self.plan if run.record]
-        for_it = [run for run in finished if run.is_reference] or [
+        uniform = [
             run
             for run in finished
             if run.key.variant.strategy == self.reference_strategy
             and "both" in run.ladders
         ]
-        return for_it[-1].record if for_it else None
+        made = [run for run in finished if run.is_reference] or uniform
+        return made[-1].record if made else None
 
     def timed(self, variant):
         """The records of a method variant that tell what its runs cost: all its

@@ -13,7 +13,7 @@ from .words import digits, number_or_dash, seconds_in_words, table
 
 
 def markdown(study, results, about, is_finished):
-    scene = study.runs.scene
+    scene = study.scene
     text = (
         f"# Study of {scene.file}\n\n"
         f"{'' if is_finished else '**Not finished yet.** '}"
@@ -73,7 +73,7 @@ def shown_measures(study):
         for measure in (*FIELD_ERRORS, "estimate_total", "estimate_quantity")
         if any(isfinite(error_of(record, measure, reference)) for record in records)
     ]
-    if not result or not study.runs.scene.has_exact_solution:
+    if not result or not study.scene.has_exact_solution:
         result.append("quantities")
     return result
 
@@ -82,7 +82,7 @@ def runs_table(study, result):
     columns = ["h", "k"]
     if result.is_to_tolerance:
         columns = ["tolerance"]
-    elif study.runs.scene.has_step_control:
+    elif study.scene.has_step_control:
         columns = ["h", "step_tolerance", "k"]
     columns += ["cells", "dofs", "steps", "seconds_total", "peak_memory_MB"]
     columns += shown_measures(study)

@@ -325,18 +325,15 @@ def fit_tolerance(samples, dimension, order, reference=None, m=2.0):
     differences to a run of the tolerance reference, its own error is subtracted (of
     norms in squares, otherwise m = 1); the model is that of the errors themselves."""
     # Meshes come in generations of cells: errors and costs are off their powers by
-    # some 10 %, as seconds are. Memory: the program itself hides its law.
-    weights = {"memory": 10.0}
+    # some 10 %, as seconds are. The program itself hides the law of the memory.
+    weights = {name: 0.3 for name in COSTS} | {"memory": 10.0}
     finer = Finer(reference, 1.0, m, 1.0) if reference is not None else None
     errors = [(s.tolerance, 1.0, s.error) for s in samples]
     error = fit_two_powers(errors, Prior(weight=0.3, is_one_term=True), ROUNDING, finer)
     d, of_steps = float(dimension), 1.0 / order
-    costs = (
-        fit_two_powers(
-            [(1.0 / s.tolerance, 1.0, getattr(s, name)) for s in samples],
-            Prior(p=exponent, weight=weights.get(name, 0.3)),
-        )
-        for name, exponent in zip(COSTS, (d + of_steps, d, d, of_steps, d))
-    )
+    costs = {}
+    for name, exponent in zip(COSTS, (d + of_steps, d, d, of_steps, d)):
+        known = [(1.0 / s.tolerance, 1.0, getattr(s, name)) for s in samples]
+        costs[name] = fit_two_powers(known, Prior(p=exponent, weight=weights[name]))
     smallest = min((s.tolerance for s in samples), default=inf)
-    return ToleranceModel(error, *costs, smallest_tolerance=smallest)
+    return ToleranceModel(error, **costs, smallest_tolerance=smallest)

@@ -45,21 +45,20 @@ class VariantResult:
 
 def analyze(study):
     """The results of all method variants."""
-    errors = [float(item) for item in study.runs.scene.items("Study/Target errors")]
-    reference, scene, results = study.reference(), study.runs.scene, []
+    errors = [float(item) for item in study.scene.items("Study/Target errors")]
+    reference, scene, results = study.reference(), study.scene, []
     for variant in study.variants():
         records = of_variant(study.records(), variant)
         measure = analysis.best_measure(records, reference)
         result = VariantResult(variant, records, measure)
         results.append(result)
-        found = result.measure, reference
-        if not result.measure:
+        if not measure:
             continue
         if result.is_to_tolerance:
-            result.model = analysis.fit_tolerance_runs(scene, records, *found)
+            fit, of = analysis.fit_tolerance_runs, (scene, records)
         else:
-            timed = study.timed(variant)
-            result.model = analysis.fit_work_precision(scene, records, timed, *found)
+            fit, of = analysis.fit_work_precision, (scene, records, study.timed(variant))
+        result.model = fit(*of, measure, reference)
         result.prices = list_prices(result.model, errors, study.budget)
     return results
 
@@ -120,7 +119,7 @@ def csv(study):
 
 
 def contents(study, results, about, is_finished):
-    reference, scene = study.reference(), study.runs.scene
+    reference, scene = study.reference(), study.scene
     fits, tolerance_fits, costs, prices = [], [], [], []
     for result in results:
         variant = result.variant._asdict()
@@ -180,7 +179,7 @@ def costs_of(study, result):
         **picked(cost.misfit, "rms_of_log=rms worst_factor"),
         "memory_rms_of_log": cost.memory_misfit.rms,
     }
-    if study.runs.scene.has_step_control:
+    if study.scene.has_step_control:
         names = "c=c_1 q=p q_is_fitted=p_is_fitted constant=c_2"
         found["steps"] = power(analysis.fit_chosen_steps(timed), names)
     return found

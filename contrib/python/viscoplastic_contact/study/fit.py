@@ -357,8 +357,10 @@ def fit_line(samples, prior_p):
     if not len(logs):
         return TwoPowers()
     x, y = logs.T
-    is_fitted = bool(np.ptp(x) > SAME)
-    p = float(np.polyfit(x, y, 1)[0]) if is_fitted else prior_p
+    distances = x - x.mean()
+    spread = (distances**2).sum()
+    is_fitted = bool(spread > SAME**2)
+    p = float((distances * y).sum() / spread) if is_fitted else prior_p
     result = TwoPowers(exp(y.mean() - p * x.mean()), p, p_is_fitted=is_fitted)
     ratios = (log_ratio(result(x_1), y) for x_1, y in samples)
     return replace(result, misfit=misfit_of(ratios))

@@ -278,9 +278,10 @@ class Study:
             seconds = min(seconds, self.left())
             found = self.timings[result.variant] = []
             what = f"the study in the run for timing of {result.variant.name}"
-            of_runs = result.records, max(levels), seconds, found, what
-            self.runs.make_timings(*of_runs, self.console)
-            for record in found:
+            for record in self.runs.make_timings(
+                result.records, max(levels), seconds, what, self.console
+            ):
+                found.append(record)
                 self.announce(record)
 
     def must_take_fewer_levels(self):
@@ -311,7 +312,7 @@ class Study:
     def make_reference(self):
         """Make the reference run, if there is time for it, of fewer levels if need
         be, unless an earlier call has made it."""
-        wanted, seconds = self.wanted_levels, "seconds_total"
+        wanted = self.wanted_levels
         fewest = wanted if self.scene.has_tolerance else FEWEST_LEVELS
         # Of fewer levels unless the budget reaches further now: the next one has twice
         # the steps on 2^dim times the cells, and all other runs take about as long as it.
@@ -319,7 +320,8 @@ class Study:
         for n_levels in range(wanted, fewest - 1, -1):
             found = self.find_reference(n_levels)
             if found and (
-                n_levels == wanted or growth * found.number(seconds) > self.budget
+                n_levels == wanted
+                or growth * found.number("seconds_total") > self.budget
             ):
                 break
         else:

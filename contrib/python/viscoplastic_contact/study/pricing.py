@@ -256,9 +256,9 @@ class Pricing:
         # solver.
         timings = []
         if wanted := fit(pilots).cheapest(self.eps):
-            left, what = seconds_left(wanted), "the timing runs"
-            of_runs = pilots, wanted.mesh_level, left, timings, what
-            runs.make_timings(*of_runs, console)
+            level, left = wanted.mesh_level, seconds_left(wanted)
+            made = runs.make_timings(pilots, level, left, "the timing runs", console)
+            timings = list(made)
         self.say_runs(timings)
         model = fit(pilots + timings)
         return measure, model, self.say_prices(model, measure, pilots + timings)

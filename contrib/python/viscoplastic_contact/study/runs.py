@@ -261,21 +261,20 @@ class StudyRuns:
             numbers["step_tolerance"] = scene.step_tolerance(key)
         return record
 
-    def make_timings(self, records, mesh_level, seconds, found, what, console):
-        """Time runs of one method variant on meshes that are finer than those of its
-        records: each with half of the mesh width of the one before, up to the mesh level,
-        and with as many steps as a record has and half of the seconds left allow. Prices
-        of long runs go by these instead of by extrapolation, and learn of solvers that
-        small meshes do not have. They end where the next one would take too much. Adds
-        their records to those found; for what see make()."""
+    def make_timings(self, records, mesh_level, seconds, what, console):
+        """Yield the records of runs of one method variant on finer meshes than those of
+        its records: each with half of the mesh width of the one before, up to the mesh
+        level, and with as many steps as a record has and half of the seconds left allow.
+        Prices of long runs go by these instead of by extrapolation, and learn of solvers
+        that small meshes do not have. They end where the next one would take too much.
+        For what see make()."""
         first, times = records[0].key, [record.key.time_level for record in records]
-        finest = max(record.key.mesh_level for record in records)
+        finest, known = max(record.key.mesh_level for record in records), list(records)
         for level in range(finest + 1, mesh_level + 1):
             # Long steps take more iterations than those of the run that is priced.
             for time in range(max(times), min(times) - 1, -1):
                 key = RunKey(first.variant, level, time, is_timing=True)
-                cost = cost_of_run(self.scene, [*records, *found], key)
-                record = self.find(key)
+                cost, record = cost_of_run(self.scene, known, key), self.find(key)
                 if record or cost[0] <= 0.5 * seconds:
                     break
             if not record:
@@ -288,7 +287,8 @@ class StudyRuns:
                 except Failure:  # what fails tells nothing
                     return
             seconds -= record.number("seconds_total")
-            found.append(record)
+            known.append(record)
+            yield record
 
 
 def is_affordable(cost, seconds):

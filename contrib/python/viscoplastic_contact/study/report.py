@@ -54,11 +54,12 @@ def analyze(study):
         results.append(result)
         if not measure:
             continue
+        found = measure, reference
         if result.is_to_tolerance:
-            fit, of = analysis.fit_tolerance_runs, (scene, records)
+            result.model = analysis.fit_tolerance_runs(scene, records, *found)
         else:
-            fit, of = analysis.fit_work_precision, (scene, records, study.timed(variant))
-        result.model = fit(*of, measure, reference)
+            timed = study.timed(variant)
+            result.model = analysis.fit_work_precision(scene, records, timed, *found)
         result.prices = list_prices(result.model, errors, study.budget)
     return results
 

@@ -45,7 +45,8 @@ def quantity_error(record, quantity, reference):
     size = size_of(reference, quantity) if has_other else 0.0
     if not size > 0.0:
         return nan
-    return abs(record.quantity(quantity) - reference.quantity(quantity)) / size
+    value = record.quantities.get(quantity, nan)
+    return abs(value - reference.quantities.get(quantity, nan)) / size
 
 
 def error_of(record, measure, reference):
@@ -219,7 +220,7 @@ def extrapolate(runs):
     and whether that can serve as a reference, as differences shrink with an order between
     1/2 and 3."""
     for name in runs[2].quantities:
-        values = [run.quantity(name) for run in runs]
+        values = [run.quantities.get(name, nan) for run in runs]
         first, last = values[1] - values[0], values[2] - values[1]
         size = size_of(runs[2], name)
         if not size > 0.0:

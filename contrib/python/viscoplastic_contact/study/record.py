@@ -95,9 +95,6 @@ class RunRecord:
         where step control chooses them, the tolerance of the steps."""
         return self.number("step_tolerance" if "step_tolerance" in self.numbers else "k")
 
-    def quantity(self, name):
-        return self.quantities.get(name, nan)
-
 
 def vector_name(name):
     """"friction_force" of "friction_force_x"; others are scalars."""

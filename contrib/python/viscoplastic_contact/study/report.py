@@ -4,6 +4,7 @@ and prices; study.md, the same for people (markdown.py)."""
 
 import time
 from dataclasses import dataclass, field
+from math import nan
 from pathlib import Path
 from typing import Optional, Union
 
@@ -110,7 +111,7 @@ def csv(study):
             texts = [record.name, *key.variant, choose_solver(record.demand), ladder]
             numbers = [key.mesh_level, key.time_level, *map(record.number, NUMBERS)]
             for name in names:
-                numbers.append(record.quantity(name))
+                numbers.append(record.quantities.get(name, nan))
                 numbers.append(quantity_error(record, name, study.reference()))
             lines.append(",".join([*texts, *(f"{value:.12g}" for value in numbers)]))
     return "\n".join(lines) + "\n"

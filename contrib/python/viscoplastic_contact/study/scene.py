@@ -62,6 +62,15 @@ class Scene:
         self.dimension = about["dimension"]
         self.n_cells, self.h = float(about["cells"]), about["h"]
         self.phases = read_phases(self["Time/Phases"])
+        self.budget = self.number("Study/Budget")
+        self.has_tolerance = self.number("Error control/Tolerance") > 0.0
+        self.has_step_control = self.number("Step control/Tolerance") > 0.0
+        # Whether the scene itself says when its mesh changes, and by how much.
+        is_refined = self["Mesh refinement/Strategy"] != "none"
+        self.is_adaptive = is_refined and not self.has_tolerance
+        # What errors are is known from it, or from fields of a reference of the user's.
+        names = "Displacement", "Reference directory"
+        self.has_exact_solution = any(self[f"Exact solution/{name}"] for name in names)
 
     def with_entries(self, entries):
         """The scene with other entries `Section/Entry=value', on the same mesh."""
@@ -79,32 +88,6 @@ class Scene:
 
     def items(self, path):
         return [item.strip() for item in self.values[path].split(",") if item.strip()]
-
-    @property
-    def budget(self):
-        return self.number("Study/Budget")
-
-    @property
-    def has_tolerance(self):
-        return self.number("Error control/Tolerance") > 0.0
-
-    @property
-    def has_step_control(self):
-        return self.number("Step control/Tolerance") > 0.0
-
-    @property
-    def is_adaptive(self):
-        """Whether the scene itself says when its mesh changes, and by how much."""
-        return self["Mesh refinement/Strategy"] != "none" and not self.has_tolerance
-
-    @property
-    def has_exact_solution(self):
-        """Whether it knows what errors are, from an exact solution or the fields of
-        a reference of the user's."""
-        return bool(
-            self["Exact solution/Displacement"]
-            or self["Exact solution/Reference directory"]
-        )
 
     def key(self):
         """The run of the scene as it is."""

@@ -21,7 +21,7 @@ from plotting import cost
 from plotting.results import read_statistics
 from reporting import run as report_of_run
 from reporting import written
-from viscoplastic_contact.study import cost as solvers
+from viscoplastic_contact.study import cost as cost_model
 from viscoplastic_contact.study.record import PHASES
 
 MANUFACTURED = SOURCE / "prm" / "verification" / "manufactured"
@@ -130,10 +130,10 @@ class Ladders(TestCase):
         self.assertGreater(len(runs), 1)
         for path in runs:
             costs = json.loads(path.read_text())["costs"]
-            demand = solvers.SolverDemand(**costs["solver_demand"])
-            self.assertEqual(solvers.choose_solver(demand), costs["solver"])
-            set_up, step = solvers.expected_cost(costs["solver"], demand)
-            memory = solvers.expected_memory(costs["solver"], demand)
+            demand = cost_model.SolverDemand(**costs["solver_demand"])
+            self.assertEqual(cost_model.choose_solver(demand), costs["solver"])
+            set_up, step = cost_model.expected_cost(costs["solver"], demand)
+            memory = cost_model.expected_memory(costs["solver"], demand)
             for value, name in (set_up, "set_up"), (step, "step"), (memory, "memory_MB"):
                 self.assertClose(value, costs["expected"][name], 1e-12, what=name)
 

@@ -11,6 +11,10 @@ from .price import price_in_words
 from .record import FIELD_ERRORS
 from .words import digits, number_or_dash, seconds_in_words, table
 
+# Columns of study.csv by shorter names.
+SHORT = {"step_tolerance": "TOL", "dofs": "unknowns"}
+SHORT |= {"seconds_total": "seconds", "peak_memory_MB": "MB"}
+
 
 def markdown(study, results, about, is_finished):
     scene = study.scene
@@ -88,28 +92,14 @@ def runs_table(study, result):
     columns += shown_measures(study)
     for name in ("effectivity", "effectivity_recovery"):
         columns += [name] if isfinite(result.records[0].number(name)) else []
-    return table(
-        ["run", *(SHORT.get(name, name) for name in columns)],
-        (
-            [
-                f"`{record.name}`",
-                *(
-                    number_or_dash(error_of(record, column, study.reference()))
-                    for column in columns
-                ),
-            ]
-            for record in result.records
-        ),
-    )
+    reference = study.reference()
 
+    def row(record):
+        values = (error_of(record, column, reference) for column in columns)
+        return [f"`{record.name}`", *map(number_or_dash, values)]
 
-# Columns of study.csv by shorter names.
-SHORT = {
-    "step_tolerance": "TOL",
-    "dofs": "unknowns",
-    "seconds_total": "seconds",
-    "peak_memory_MB": "MB",
-}
+    head = ["run", *(SHORT.get(name, name) for name in columns)]
+    return table(head, map(row, result.records))
 
 
 def runs_of(study, variant, ladder):
@@ -346,17 +336,14 @@ def reference_in_words(study):
         "\nRichardson check of the quantities at the end, in the runs "
         f"{names[0]}, {names[1]} and {names[2]}:\n\n"
     )
-    return text + table(
-        "quantity,values,order,extrapolated,error of the last,as a reference",
-        (
-            [
-                name,
-                ", ".join(digits(value, 5) for value in values),
-                number_or_dash(order),
-                number_or_dash(extrapolated, 5),
-                number_or_dash(error, 2),
-                "good" if is_good else "not to be trusted",
-            ]
-            for name, values, order, extrapolated, error, is_good in extrapolate(diagonal)
-        ),
-    )
+    rows = [
+        [
+            name,
+            ", ".join(digits(value, 5) for value in values),
+            *(number_or_dash(order), number_or_dash(extrapolated, 5)),
+            *(number_or_dash(error, 2), "good" if is_good else "not to be trusted"),
+        ]
+        for name, values, order, extrapolated, error, is_good in extrapolate(diagonal)
+    ]
+    head = "quantity,values,order,extrapolated,error of the last,as a reference"
+    return text + table(head, rows)

@@ -119,8 +119,8 @@ namespace Viscoplastic
                            const DistributedVector &x) const
   {
     const auto multiply_by = [&](const double *at) {
-      static const auto in_2d = symmetric_product<2>(),
-                        in_3d = symmetric_product<3>();
+      static const auto in_2d = row_kernels<2>().multiply,
+                        in_3d = row_kernels<3>().multiply;
       (pattern->dim == 2 ? in_2d : in_3d)({pattern->n_owned,
                                            pattern->begin.data(),
                                            first_block().data(),

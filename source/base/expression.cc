@@ -7,6 +7,7 @@
 #include <viscoplastic_contact/base/types.h>
 
 #include <cmath>
+#include <limits>
 
 namespace Viscoplastic
 {
@@ -81,18 +82,11 @@ namespace Viscoplastic
 
 
 
-    template <int dim>
-    const ParserWithTables<dim> &
-    with_tables(const std::unique_ptr<FunctionParser<dim>> &parser)
-    {
-      return static_cast<const ParserWithTables<dim> &>(*parser);
-    }
   } // namespace
 
 
 
-  template <int dim>
-  std::unique_ptr<FunctionParser<dim>>
+  std::shared_ptr<ParserWithTables>
   parse_expression(const std::string &text,
                    const std::string &variables,
                    const std::string &entry)
@@ -101,15 +95,9 @@ namespace Viscoplastic
       throw ExpressionError("The expression of '" + entry + "' is empty.",
                             entry);
     refuse_slips(text, entry);
-    std::unique_ptr<FunctionParser<dim>> parser =
-      std::make_unique<ParserWithTables<dim>>(columns_in(text));
     try
       {
-        parser->initialize(variables,
-                           text,
-                           {{"pi", numbers::PI}, {"Pi", numbers::PI}},
-                           /* time_dependent = */ true);
-        parser->value(Point<dim>()); // muParser parses at the first evaluation
+        return std::make_shared<ParserWithTables>(text, variables);
       }
     catch (const std::exception &)
       {
@@ -125,7 +113,6 @@ namespace Viscoplastic
                               "and if are known."),
           entry);
       }
-    return parser;
   }
 
 
@@ -135,15 +122,9 @@ namespace Viscoplastic
   parse_point(const std::string &text, const std::string &entry)
   {
     std::vector<double> numbers;
-    try
-      {
-        numbers =
-          Utilities::string_to_double(Utilities::split_string_list(text, ','));
-      }
-    catch (const std::exception &)
-      {
-        numbers.clear(); // refused below
-      }
+    for (const std::string &number : Utilities::split_string_list(text, ','))
+      numbers.push_back(
+        number_of(number).value_or(std::numeric_limits<double>::infinity()));
     if (numbers.size() != dim ||
         !std::all_of(numbers.begin(), numbers.end(), [](const double x) {
           return std::isfinite(x);
@@ -168,13 +149,13 @@ namespace Viscoplastic
     , time_dependent(mentions(text, "t"))
     , position_dependent(false)
     , constant(0.)
-    , parser(parse_expression<dim>(text, variables + ",t", entry))
+    , parser(parse_expression(text, variables + ",t", entry))
   {
     const auto names = Utilities::split_string_list(variables);
     for (std::size_t i = 0; i < names.size(); ++i)
       (i < dim ? position_dependent : has_additional_variable) |=
         mentions(text, names[i]);
-    constant = parser->value(Point<dim>());
+    constant = parser->value();
     // Check a constant here, since its value may never be asked for.
     if (!time_dependent && !position_dependent && !has_additional_variable)
       value(Point<dim>(), 0.);
@@ -186,7 +167,7 @@ namespace Viscoplastic
   Expression<dim>::Expression(const Function    &function,
                               const std::string &entry)
     : entry(entry)
-    , variables(FunctionParser<dim>::default_variable_names())
+    , variables(coordinate_names<dim>)
     , time_dependent(true)
     , position_dependent(true)
     , constant(0.)
@@ -206,13 +187,13 @@ namespace Viscoplastic
       result = function(x, t);
     else if (time_dependent || position_dependent || has_additional_variable)
       {
-        parser->set_time(t);
         if (has_additional_variable)
-          with_tables<dim>(parser).set_additional_variable(additional);
-        result = parser->value(x);
+          parser->variables[dim] = additional;
+        std::copy(x.begin_raw(), x.end_raw(), parser->variables.begin());
+        parser->variables.back() = t;
+        result                   = parser->value();
       }
-    if (!std::isfinite(result))
-      require_finite(result, x, t);
+    require_finite(result, x, t);
     return result;
   }
 
@@ -226,8 +207,7 @@ namespace Viscoplastic
   {
     if (!std::isfinite(result))
       {
-        const std::string gap =
-          parser ? with_tables<dim>(parser).last_gap() : "";
+        const std::string gap = parser ? parser->last_gap() : "";
         // Other variables may follow the components of x.
         auto names = Utilities::split_string_list(variables);
         names.resize(dim);
@@ -236,10 +216,7 @@ namespace Viscoplastic
           position += (position.empty() ? "" : ",") + name;
         refuse("The expression '" + (parser ? excerpt(text) : "derived") +
                "' of '" + entry + "' has the value " + as_text(result) +
-               " at " +
-               (position == FunctionParser<dim>::default_variable_names() ?
-                  "x" :
-                  position) +
+               " at " + (position == coordinate_names<dim> ? "x" : position) +
                " = (" + as_text(x) + "), t = " + as_text(t) +
                (gap.empty() ? "; it must be finite." : ": " + gap + "."));
       }
@@ -253,8 +230,8 @@ namespace Viscoplastic
   {
     if (!parser || !time_dependent)
       return false;
-    bool result = text.find_first_of("<>=!?") != std::string::npos ||
-                  with_tables<dim>(parser).may_jump();
+    bool result =
+      text.find_first_of("<>=!?") != std::string::npos || parser->may_jump();
     for (const char *function : {"if", "int", "ceil", "floor", "rint", "sign"})
       result = result || mentions(text, function);
     return result;
@@ -282,7 +259,7 @@ namespace Viscoplastic
   {
     if (!parser || !time_dependent)
       return false;
-    bool result = may_jump() || with_tables<dim>(parser).has_tables();
+    bool result = may_jump() || parser->has_tables();
     for (const char *function :
          {"abs", "min", "max", "fmod", "asin", "acos", "sqrt"})
       result = result || mentions(text, function);
@@ -391,7 +368,6 @@ namespace Viscoplastic
   template class Expression<1>;
   VISCOPLASTIC_INSTANTIATE_CLASS(Expression);
   VISCOPLASTIC_INSTANTIATE_CLASS(VectorExpression);
-  VISCOPLASTIC_INSTANTIATE(parse_expression);
   VISCOPLASTIC_INSTANTIATE(parse_point);
   VISCOPLASTIC_INSTANTIATE(optional_vector);
 } // namespace Viscoplastic

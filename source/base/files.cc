@@ -91,8 +91,6 @@ namespace Viscoplastic
       }
 
       Descriptor(const Descriptor &) = delete;
-      Descriptor &
-      operator=(const Descriptor &) = delete;
 
       void
       write_all(const std::string &bytes) const
@@ -315,7 +313,6 @@ namespace Viscoplastic
   std::string
   path_of_resource(const std::string &name)
   {
-    namespace fs = std::filesystem;
     std::error_code error;
     // Paths relative to the program let an installation be moved.
     const fs::path program = fs::read_symlink("/proc/self/exe", error);

@@ -17,24 +17,11 @@ namespace Viscoplastic
 
 
 
-  template <int dim>
-  SymmetricProduct<dim>
-  avx2_product()
-  {
-    return multiply<dim>;
-  }
-
-
-
   template RowKernels<2>
   avx2_row_kernels();
   template RowKernels<3>
   avx2_row_kernels();
 
-  template SymmetricProduct<2>
-  avx2_product<2>();
-  template SymmetricProduct<3>
-  avx2_product<3>();
 } // namespace Viscoplastic
 
 #endif

@@ -180,17 +180,6 @@ namespace Viscoplastic
 
 
 
-    template <int dim>
-    RowKernels<dim>
-    kernels_of_this_file()
-    {
-      return {residual<dim>,
-              smooth_forward_from_zero<dim>,
-              smooth_backward<dim>};
-    }
-
-
-
     /// y := A x: the blocks of a row, and their transposes at owned columns.
     /// Without AVX2, scalar code is faster than vectors of four doubles.
     template <int dim>
@@ -267,6 +256,18 @@ namespace Viscoplastic
             y[i * dim + c] += sum[c];
 #endif
         }
+    }
+
+
+
+    template <int dim>
+    RowKernels<dim>
+    kernels_of_this_file()
+    {
+      return {residual<dim>,
+              smooth_forward_from_zero<dim>,
+              smooth_backward<dim>,
+              multiply<dim>};
     }
   } // namespace
 } // namespace Viscoplastic

@@ -111,12 +111,9 @@ namespace Viscoplastic
       std::string
       word()
       {
-        const std::size_t begin = at;
-        if (std::isalpha(static_cast<unsigned char>(next())) != 0)
-          while (std::isalnum(static_cast<unsigned char>(next())) != 0 ||
-                 next() == '_')
-            ++at;
-        return text.substr(begin, at - begin);
+        const std::string result = next() == '_' ? "" : identifier_at(text, at);
+        at += result.size();
+        return result;
       }
 
       /// Whether a parenthesis follows, which makes the word a function.

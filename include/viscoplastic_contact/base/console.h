@@ -31,8 +31,6 @@ namespace Viscoplastic
     }
 
     Console(const Console &) = delete;
-    Console &
-    operator=(const Console &) = delete;
 
     /// Return the stream for output: on rank 0, flushing it writes to standard
     /// output and log; on other ranks the text is discarded.

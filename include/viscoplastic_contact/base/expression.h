@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
-#include <deal.II/base/function_parser.h>
 #include <deal.II/base/point.h>
+#include <deal.II/base/tensor.h>
 
 #include <functional>
 #include <memory>
@@ -29,14 +29,23 @@ namespace Viscoplastic
   };
 
 
-  /// Return a muParser function of @p variables, e.g. "x,y,t"; set_time() sets
-  /// the last of these. @p entry names the parameter in error messages. Throws
-  /// ExpressionError when @p text cannot be parsed.
-  template <int dim>
-  std::unique_ptr<FunctionParser<dim>>
+  class ParserWithTables;
+
+  /// Return a muParser function of @p variables, e.g. "x,y,t". @p entry names
+  /// the parameter in error messages. Throws ExpressionError when @p text
+  /// cannot be parsed.
+  std::shared_ptr<ParserWithTables>
   parse_expression(const std::string &text,
                    const std::string &variables,
                    const std::string &entry);
+
+
+
+  /// The names of the coordinates: "x,y" or "x,y,z".
+  template <int dim>
+  const std::string coordinate_names = std::string("x,y,z").substr(0,
+                                                                   2 * dim - 1);
+
 
 
   /// Parse a point or vector: dim numbers separated by commas. Throws
@@ -59,8 +68,7 @@ namespace Viscoplastic
     /// parsed.
     Expression(const std::string &text,
                const std::string &entry,
-               const std::string &variables =
-                 FunctionParser<dim>::default_variable_names());
+               const std::string &variables = coordinate_names<dim>);
 
     using Function = std::function<double(const Point<dim> &, const double)>;
 
@@ -142,12 +150,12 @@ namespace Viscoplastic
     }
 
   private:
-    std::string                          text, entry, variables;
-    bool                                 time_dependent, position_dependent;
-    bool                                 has_additional_variable = false;
-    double                               constant;
-    std::unique_ptr<FunctionParser<dim>> parser;
-    Function                             function; // used if there is no parser
+    std::string                       text, entry, variables;
+    bool                              time_dependent, position_dependent;
+    bool                              has_additional_variable = false;
+    double                            constant;
+    std::shared_ptr<ParserWithTables> parser;
+    Function                          function; // used if there is no parser
   };
 
 

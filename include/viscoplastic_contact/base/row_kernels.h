@@ -40,8 +40,20 @@ namespace Viscoplastic
   };
 
 
-  /// The innermost loops of multigrid, compiled for one kind of processor. See
-  /// SharedRows.
+  /// The rows of a symmetric matrix in double precision: diagonal and upper
+  /// triangle. `first_block` is the index of the first block of each row.
+  struct SymmetricRows
+  {
+    unsigned int        n_rows;
+    const std::size_t  *begin, *first_block;
+    const unsigned int *columns;
+    const double       *values;
+  };
+
+
+
+  /// The innermost loops of multigrid, see SharedRows, and of products with a
+  /// DistributedMatrix, compiled for one kind of processor.
   template <int dim>
   struct RowKernels
   {
@@ -57,47 +69,26 @@ namespace Viscoplastic
                             const Block *inverse,
                             float       *x,
                             const float *b);
+    /// y := A x.
+    void (*multiply)(const SymmetricRows &A, double *y, const double *x);
   };
 
-  /// The rows of a symmetric matrix in double precision: diagonal and upper
-  /// triangle. `first_block` is the index of the first block of each row.
-  struct SymmetricRows
-  {
-    unsigned int        n_rows;
-    const std::size_t  *begin, *first_block;
-    const unsigned int *columns;
-    const double       *values;
-  };
 
-  /// y := A x.
-  template <int dim>
-  using SymmetricProduct = void (*)(const SymmetricRows &A,
-                                    double              *y,
-                                    const double        *x);
 
   /// The kernels for any processor that the program runs on.
   template <int dim>
   RowKernels<dim>
   portable_row_kernels();
-  template <int dim>
-  SymmetricProduct<dim>
-  portable_product();
 
 #ifdef VISCOPLASTIC_CONTACT_HAS_AVX2_KERNELS
   /// The kernels for x86 with the extensions AVX2 and FMA (2013 and later).
   template <int dim>
   RowKernels<dim>
   avx2_row_kernels();
-  template <int dim>
-  SymmetricProduct<dim>
-  avx2_product();
 #endif
 
   /// The fastest kernels for the processor at hand.
   template <int dim>
   RowKernels<dim>
   row_kernels();
-  template <int dim>
-  SymmetricProduct<dim>
-  symmetric_product();
 } // namespace Viscoplastic

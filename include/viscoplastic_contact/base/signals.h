@@ -60,8 +60,6 @@ namespace Viscoplastic
     ~UnexpectedEnd();
 
     UnexpectedEnd(const UnexpectedEnd &) = delete;
-    UnexpectedEnd &
-    operator=(const UnexpectedEnd &) = delete;
 
   private:
     const std::string  doing;

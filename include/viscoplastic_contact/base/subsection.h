@@ -25,8 +25,6 @@ namespace Viscoplastic
     }
 
     Subsection(const Subsection &) = delete;
-    Subsection &
-    operator=(const Subsection &) = delete;
 
   private:
     ParameterHandler &prm;

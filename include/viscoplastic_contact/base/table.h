@@ -78,8 +78,6 @@ namespace Viscoplastic
     };
 
     DataTable(const DataTable &) = delete;
-    DataTable &
-    operator=(const DataTable &) = delete;
 
     /// The arguments of the rows in ascending order, at which linear
     /// interpolation has kinks and constant interpolation jumps.

@@ -1,58 +1,42 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
-#include <deal.II/base/function_parser.h>
 #include <deal.II/base/mu_parser_internal.h>
+#include <deal.II/base/numbers.h>
 #include <deal.II/base/utilities.h>
 
+#include <viscoplastic_contact/base/messages.h>
 #include <viscoplastic_contact/base/table.h>
 
 #include <muParser.h>
 
 #include <cmath>
-#include <map>
-#include <memory>
-#include <string>
-#include <vector>
 
 namespace Viscoplastic
 {
   using namespace dealii;
 
-  /// A FunctionParser with the same variables, constants and functions as in
-  /// deal.II that can also call columns of tables, which deal.II does not let
-  /// users add to muParser. One more variable may stand between the coordinates
-  /// and time. Evaluation costs half of that in deal.II, which looks up the
-  /// parser of the thread; this class is not thread-safe.
-  template <int dim>
-  class ParserWithTables : public FunctionParser<dim>
+  /// A muParser function with the constants and functions of deal.II's
+  /// FunctionParser that can also call columns of tables, which that class does
+  /// not let users add. Evaluation costs half of that in deal.II, which looks
+  /// up the parser of the thread; this class is not thread-safe.
+  class ParserWithTables
   {
   public:
-    explicit ParserWithTables(
-      const std::vector<std::shared_ptr<const DataTable::Column>> &columns)
-      : FunctionParser<dim>(1)
-    {
-      for (const auto &column : columns)
-        calls.push_back({column, *this});
-    }
-
-    using FunctionParser<dim>::initialize;
-
-    void
-    initialize(const std::string                   &variable_names,
-               const std::vector<std::string>      &expressions,
-               const std::map<std::string, double> &constants,
-               const bool /*time_dependent*/) override
+    /// Throws ExcMessage with the words of muParser if the text is wrong.
+    ParserWithTables(const std::string &text, const std::string &names)
+      : variables(Utilities::split_string_list(names).size())
     {
       namespace Functions = internal::FunctionParser;
-      const auto names    = Utilities::split_string_list(variable_names, ',');
-      variables.resize(names.size());
-      for (std::size_t i = 0; i < names.size(); ++i)
-        parser.DefineVar(names[i], &variables[i]);
+      std::size_t n       = 0;
+      for (const std::string &name : Utilities::split_string_list(names))
+        parser.DefineVar(name, &variables[n++]);
+      for (const auto &column : columns_in(text))
+        calls.push_back({column, *this});
       try
         {
-          for (const auto &[name, value] : constants)
-            parser.DefineConst(name, value);
+          for (const char *name : {"pi", "Pi"})
+            parser.DefineConst(name, numbers::PI);
           parser.DefineFun("if", Functions::mu_if, true);
           parser.DefineOprt("|", Functions::mu_or, 1);
           parser.DefineOprt("&", Functions::mu_and, 2);
@@ -72,44 +56,40 @@ namespace Viscoplastic
                                      &call,
                                      false);
           // muParser accepts no blank between a function and its parenthesis.
-          std::string text;
-          for (const char c : expressions[0])
+          std::string without_blanks;
+          for (const char c : text)
             {
               if (c == '(')
-                text.erase(text.find_last_not_of(" \t") + 1);
-              text += c;
+                without_blanks.erase(without_blanks.find_last_not_of(" \t") +
+                                     1);
+              without_blanks += c;
             }
-          parser.SetExpr(text);
+          parser.SetExpr(without_blanks);
+          value(); // muParser parses at the first evaluation
         }
       catch (const mu::ParserError &error) // not derived from std::exception
         {
-          AssertThrow(false, ExcMessage(error.GetMsg()));
+          refuse(error.GetMsg());
         }
     }
 
+    ParserWithTables(const ParserWithTables &) = delete;
+    ParserWithTables &
+    operator=(const ParserWithTables &) = delete;
+
+    /// Return the value for the present `variables`.
     double
-    value(const Point<dim> &x, const unsigned int /*component*/) const override
+    value() const
     {
       gap.clear();
-      for (unsigned int d = 0; d < dim; ++d)
-        variables[d] = x[d];
-      variables.back() = this->get_time();
       try
         {
           return parser.Eval();
         }
       catch (const mu::ParserError &error)
         {
-          AssertThrow(false, ExcMessage(error.GetMsg()));
+          refuse(error.GetMsg());
         }
-      return 0.;
-    }
-
-    /// Set the variable between the coordinates and time.
-    void
-    set_additional_variable(const double value) const
-    {
-      variables[dim] = value;
     }
 
     bool
@@ -134,6 +114,8 @@ namespace Viscoplastic
       return gap;
     }
 
+    std::vector<double> variables; // zero at first
+
   private:
     struct Call
     {
@@ -151,10 +133,8 @@ namespace Viscoplastic
       return result;
     }
 
-    // Modified by evaluations.
-    mutable mu::Parser          parser;
-    mutable std::vector<double> variables;
-    mutable std::string         gap;
-    std::vector<Call>           calls;
+    mu::Parser          parser;
+    mutable std::string gap;
+    std::vector<Call>   calls;
   };
 } // namespace Viscoplastic

@@ -166,18 +166,31 @@ namespace Viscoplastic
         return {base.dimension->power(*exponent.number), number, base.has_unit};
       }
 
+      /// Count the depth of the recursion.
+      void
+      descend()
+      {
+        if (++depth > deepest)
+          throw Contradiction{"'" + excerpt(text) + "' is nested more than " +
+                              std::to_string(deepest) +
+                              " deep, too deep for its units"};
+      }
+
       Value
       choice()
       {
-        const Level       level(*this);
+        descend();
         const std::size_t begin = at;
-        const Value       value = binary(0);
-        if (!takes("?"))
-          return value;
-        const Value first = choice();
-        if (!takes(":"))
-          throw Unreadable();
-        return common(first, choice(), begin);
+        Value             value = binary(0);
+        if (takes("?"))
+          {
+            value = choice();
+            if (!takes(":"))
+              throw Unreadable();
+            value = common(value, choice(), begin);
+          }
+        --depth;
+        return value;
       }
 
       /// Read operands between binary operators of at least this precedence;
@@ -239,18 +252,21 @@ namespace Viscoplastic
       Value
       factor()
       {
-        const Level level(*this);
-        if (takes("-"))
+        descend();
+        const bool has_minus = takes("-");
+        Value      value;
+        if (has_minus || !take({"+", "!"}).empty())
+          value = factor();
+        else
           {
-            Value value = factor();
-            if (value.number)
-              value.number = -*value.number;
-            return value;
+            value = atom();
+            if (takes("^"))
+              value = power(value, factor());
           }
-        if (!take({"+", "!"}).empty())
-          return factor();
-        const Value base = atom();
-        return takes("^") ? power(base, factor()) : base;
+        if (has_minus && value.number)
+          value.number = -*value.number;
+        --depth;
+        return value;
       }
 
       Value
@@ -328,26 +344,6 @@ namespace Viscoplastic
         return anything; // sign(), columns of tables, and functions that
                          // muParser refuses
       }
-
-      /// Counts the depth of the recursion during its lifetime.
-      struct Level
-      {
-        explicit Level(DimensionReader &reader)
-          : depth(reader.depth)
-        {
-          if (++depth > deepest)
-            throw Contradiction{"'" + excerpt(reader.text) + "' is nested " +
-                                "more than " + std::to_string(deepest) +
-                                " deep, too deep for its units"};
-        }
-
-        ~Level()
-        {
-          --depth;
-        }
-
-        unsigned int &depth;
-      };
 
       const std::string &text;
       std::size_t        at    = 0;

@@ -2,6 +2,7 @@
 #include <deal.II/base/patterns.h>
 
 #include <viscoplastic_contact/base/messages.h>
+#include <viscoplastic_contact/base/subsection.h>
 #include <viscoplastic_contact/laws/law_library.h>
 #include <viscoplastic_contact/parameters/parameter_file.h>
 #include <viscoplastic_contact/parameters/parameter_text.h>
@@ -56,9 +57,8 @@ namespace Viscoplastic
   Parameters::declare()
   {
     const auto in_subsection = [this](const std::string &name, auto &entries) {
-      handler.enter_subsection(name);
+      const Subsection subsection(handler, name);
       entries.declare(handler);
-      handler.leave_subsection();
     };
     handler.add_parameter("Dimension",
                           dimension,
@@ -76,9 +76,8 @@ namespace Viscoplastic
     in_subsection("Geometry", geometry);
     const auto declare_material = [this](const std::string  &name,
                                          MaterialParameters &entries) {
-      handler.enter_subsection(name);
+      const Subsection subsection(handler, name);
       entries.declare(handler, laws);
-      handler.leave_subsection();
     };
     declare_material("Material", material);
     in_subsection("Material", stress);
@@ -170,18 +169,6 @@ namespace Viscoplastic
 
 
   void
-  Parameters::locate_mesh_file(const std::vector<ParameterLine> &lines)
-  {
-    const std::string found =
-      last_line(lines, "Geometry/File")->locate(geometry.file);
-    handler.enter_subsection("Geometry");
-    handler.set("File", found);
-    handler.leave_subsection();
-  }
-
-
-
-  void
   Parameters::resolve_automatic_choices()
   {
     const bool has_tolerance = error_control.has_tolerance();
@@ -233,16 +220,20 @@ namespace Viscoplastic
     for (const ParameterLine &line : lines)
       if (line.is_opening && line.section.empty())
         {
-          const auto id = [&] {
-            return static_cast<unsigned int>(std::stoul(line.name.substr(9)));
+          const std::size_t blank = line.name.find(' ');
+          const std::string kind  = line.name.substr(0, blank);
+          const auto        id    = [&] {
+            return static_cast<unsigned int>(
+              std::stoul(line.name.substr(blank)));
           };
-          if (line.name.compare(0, 9, "Boundary ") == 0)
+          if (blank == std::string::npos)
+            continue;
+          if (kind == "Boundary")
             boundaries[id()];
-          if (line.name.compare(0, 9, "Material ") == 0)
+          else if (kind == "Material")
             materials[id()];
-          if (line.name.compare(0, 6, "Table ") == 0)
-            tables.insert(
-              static_cast<unsigned int>(std::stoul(line.name.substr(6))));
+          else if (kind == "Table")
+            tables.insert(id());
         }
     for (const ParameterLine &line : lines)
       if (!line.is_opening && !line.name.empty())
@@ -261,7 +252,12 @@ namespace Viscoplastic
     if (!materials.empty())
       check_material(lines);
     if (!geometry.file.empty())
-      locate_mesh_file(lines);
+      {
+        // The record of the run does not depend on the working directory.
+        const Subsection subsection(handler, "Geometry");
+        handler.set("File",
+                    last_line(lines, "Geometry/File")->locate(geometry.file));
+      }
     resolve_automatic_choices();
     refinement.check();
     if (solver.contact_tolerance != 0. && !(solver.contact_tolerance >= 1e-14))
@@ -351,9 +347,8 @@ namespace Viscoplastic
             }
           else
             {
-              record.enter_subsection(name);
+              const Subsection subsection(record, name);
               declare_all(node);
-              record.leave_subsection();
             }
       };
     declare_all(entries_as_written());

@@ -7,7 +7,6 @@
 
 #include <boost/property_tree/ptree.hpp>
 
-#include <cctype>
 #include <cmath>
 #include <cstdlib>
 #include <iomanip>
@@ -41,14 +40,6 @@ namespace Viscoplastic
       {"1/temperature", {0., 0., 0., -1.}},
       {"energy/mol", {3., 0., 1.}},
       {"energy/(mol temperature)", {3., 0., 1., -1.}}};
-
-
-
-    bool
-    is_part_of_word(const char c)
-    {
-      return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_';
-    }
 
 
 
@@ -90,14 +81,11 @@ namespace Viscoplastic
           i                       = end_of_number(text, begin);
           if (i == begin)
             {
-              ++i;
               // Skip names, since digits in them begin no number.
-              if (is_part_of_word(text[begin]))
-                while (i < text.size() && is_part_of_word(text[i]))
-                  ++i;
+              i += std::max<std::size_t>(1, identifier_at(text, i).size());
               continue;
             }
-          if (i < text.size() && is_part_of_word(text[i]))
+          if (!identifier_at(text, i).empty())
             {
               const auto found =
                 read_unit(text.substr(0, i) + ' ' + text.substr(i), i);
@@ -154,33 +142,37 @@ namespace Viscoplastic
         }
       return {};
     }
+
+
+
+    /// Return the unit of an entry from the words after `Unit: ' in its
+    /// description; for unknown words the dimension is unknown. @p exponent is
+    /// n or m in power_law and compliance. Returns nothing for a description
+    /// without `Unit: ': the entry is no number.
+    std::optional<EntryUnit>
+    unit_of_entry(const std::string           &description,
+                  const std::optional<double> &exponent)
+    {
+      const std::string introduction = "Unit: ";
+      const std::size_t begin        = description.rfind(introduction);
+      if (begin == std::string::npos)
+        return {};
+      std::string words = description.substr(begin + introduction.size());
+      words             = words.substr(0, words.find('.'));
+      if (words == "seconds")
+        return EntryUnit{Dimension{0., 1., 0.}, true};
+      if (words == power_law && exponent)
+        return EntryUnit{Dimension{0., -1., -*exponent}, false, exponent};
+      if (words == compliance && exponent)
+        return EntryUnit{Dimension{-*exponent, 0., 1.},
+                         false,
+                         exponent,
+                         "Compliance exponent"};
+      const auto known = dimension_of_words.find(words);
+      return known == dimension_of_words.end() ? EntryUnit() :
+                                                 EntryUnit{known->second};
+    }
   } // namespace
-
-
-
-  std::optional<EntryUnit>
-  unit_of_entry(const std::string           &description,
-                const std::optional<double> &exponent)
-  {
-    const std::string introduction = "Unit: ";
-    const std::size_t begin        = description.rfind(introduction);
-    if (begin == std::string::npos)
-      return {};
-    std::string words = description.substr(begin + introduction.size());
-    words             = words.substr(0, words.find('.'));
-    if (words == "seconds")
-      return EntryUnit{Dimension{0., 1., 0.}, true};
-    if (words == power_law && exponent)
-      return EntryUnit{Dimension{0., -1., -*exponent}, false, exponent};
-    if (words == compliance && exponent)
-      return EntryUnit{Dimension{-*exponent, 0., 1.},
-                       false,
-                       exponent,
-                       "Compliance exponent"};
-    const auto known = dimension_of_words.find(words);
-    return known == dimension_of_words.end() ? EntryUnit() :
-                                               EntryUnit{known->second};
-  }
 
 
 

@@ -38,30 +38,17 @@ namespace Viscoplastic
       double                           start = 0., n_all_steps = 0.;
       for (const std::string &phase : Utilities::split_string_list(text, ','))
         {
-          const auto parts   = Utilities::split_string_list(phase, ':');
-          double     end     = 0.;
-          int        n_steps = 0;
-          try
-            {
-              if (parts.size() == 2)
-                {
-                  end = Utilities::string_to_double(parts[0]);
-                  // Read as a double: large numbers would overflow an integer.
-                  const double n = Utilities::string_to_double(parts[1]);
-                  if (n == std::floor(n))
-                    n_steps =
-                      static_cast<int>(std::clamp(n, 0., 2. * max_n_steps));
-                }
-            }
-          catch (const std::exception &)
-            {
-              n_steps = 0; // refused below
-            }
-          if (!(n_steps > 0))
+          const auto parts = Utilities::split_string_list(phase, ':');
+          // Read as a double: large numbers would overflow an integer.
+          const double n =
+            parts.size() == 2 ? number_of(parts[1]).value_or(0.) : 0.;
+          if (!(n > 0.) || n != std::floor(n) || !number_of(parts[0]))
             refuse("'Time/Phases': '" + excerpt(phase) +
                    "' is not of the form `end time: number of steps' with a "
                    "positive number of steps.");
           const std::string of_phase = " of '" + excerpt(phase) + "'";
+          const double      end      = *number_of(parts[0]);
+          const int n_steps = static_cast<int>(std::min(n, 2. * max_n_steps));
           if (!std::isfinite(end) || !(end > start))
             refuse("'Time/Phases': the end time" + of_phase +
                    " must be finite and lie after " + number(start, 15) + ".");

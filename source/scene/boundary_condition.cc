@@ -279,7 +279,10 @@ namespace Viscoplastic
     , role(parameters.role)
     , solution(solution)
   {
-    require_given(id, "Role", role != BoundaryRole::not_given, choices(role));
+    require_given(id,
+                  "Role",
+                  role != BoundaryRole::not_given,
+                  choices<BoundaryRole>);
     if (role == BoundaryRole::contact)
       {
         friction_law = parameters.friction_law;

@@ -16,7 +16,7 @@ namespace Viscoplastic
     read_field(const std::string &name)
     {
       const std::vector<std::string> names =
-        Utilities::split_string_list(choices(RecordedField()), '|');
+        Utilities::split_string_list(choices<RecordedField>, '|');
       const auto found = std::find(names.begin(), names.end(), name);
       if (found == names.end())
         {
@@ -110,16 +110,9 @@ namespace Viscoplastic
         if (parts.size() != 3)
           refuse("'Output/Lines': '" + excerpt(line) +
                  "' is no line; write `begin : end : number of points'.");
-        int n_points = 0;
-        try
-          {
-            n_points = Utilities::string_to_int(parts[2]);
-          }
-        catch (const std::exception &)
-          {
-            n_points = 0; // refused below
-          }
-        if (!(n_points >= 2) || !(n_points <= most_points_of_line))
+        const double n_points = number_of(parts[2]).value_or(0.);
+        if (!(n_points >= 2.) || !(n_points <= most_points_of_line) ||
+            n_points != std::floor(n_points))
           refuse("'Output/Lines': a line has a number of points from 2 to " +
                  std::to_string(most_points_of_line) + ", not '" +
                  excerpt(parts[2]) + "'.");

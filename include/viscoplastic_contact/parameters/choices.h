@@ -12,8 +12,11 @@ namespace Viscoplastic
 {
   using namespace dealii;
 
-  // Entries with a fixed list of values. Each has an enumeration and a function
-  // choices() with the names of its values in parameter files, in order.
+  // Entries with a fixed list of values, each with an enumeration.
+
+  /// The names of the values of an enumeration in parameter files, in order.
+  template <typename Choice>
+  constexpr const char *choices = nullptr;
 
   /// The body that a plane mesh represents: a slice of a long body with zero or
   /// uniform strain along z, or the meridian section of a body of revolution.
@@ -24,11 +27,9 @@ namespace Viscoplastic
     axisymmetric
   };
 
-  inline const char *
-  choices(PlaneModel)
-  {
-    return "strain|generalized strain|axisymmetric";
-  }
+  template <>
+  inline constexpr const char *choices<PlaneModel> =
+    "strain|generalized strain|axisymmetric";
 
   enum class VolumetricIntegration
   {
@@ -37,11 +38,9 @@ namespace Viscoplastic
     mean_dilatation
   };
 
-  inline const char *
-  choices(VolumetricIntegration)
-  {
-    return "automatic|full|mean dilatation";
-  }
+  template <>
+  inline constexpr const char *choices<VolumetricIntegration> =
+    "automatic|full|mean dilatation";
 
   /// The discretization of the irreversible stress z: one value per cell, or
   /// one per quadrature point.
@@ -51,11 +50,9 @@ namespace Viscoplastic
     quadrature_points
   };
 
-  inline const char *
-  choices(StressHistory)
-  {
-    return "cell means|quadrature points";
-  }
+  template <>
+  inline constexpr const char *choices<StressHistory> =
+    "cell means|quadrature points";
 
   enum class BoundaryRole
   {
@@ -68,11 +65,9 @@ namespace Viscoplastic
     contact
   };
 
-  inline const char *
-  choices(BoundaryRole)
-  {
-    return "not given|clamped|displacement|traction|free|symmetry|contact";
-  }
+  template <>
+  inline constexpr const char *choices<BoundaryRole> =
+    "not given|clamped|displacement|traction|free|symmetry|contact";
 
   /// The origin of loads and boundary values in a scene with an exact solution.
   enum class DataSource
@@ -81,11 +76,8 @@ namespace Viscoplastic
     solution
   };
 
-  inline const char *
-  choices(DataSource)
-  {
-    return "scene|solution";
-  }
+  template <>
+  inline constexpr const char *choices<DataSource> = "scene|solution";
 
   /// `automatic' is replaced when parameters are read.
   enum class TimeScheme
@@ -96,11 +88,9 @@ namespace Viscoplastic
     automatic
   };
 
-  inline const char *
-  choices(TimeScheme)
-  {
-    return "forward Euler|backward Euler|Heun|automatic";
-  }
+  template <>
+  inline constexpr const char *choices<TimeScheme> =
+    "forward Euler|backward Euler|Heun|automatic";
 
   /// Return the order of convergence of a scheme in the time step k.
   inline unsigned int
@@ -117,11 +107,9 @@ namespace Viscoplastic
     backward_euler
   };
 
-  inline const char *
-  choices(StiffnessPolicy)
-  {
-    return "refuse|subdivide|backward Euler";
-  }
+  template <>
+  inline constexpr const char *choices<StiffnessPolicy> =
+    "refuse|subdivide|backward Euler";
 
   /// Whether steps are divided until they resolve the beginning and end of
   /// slip. `automatic' is replaced when parameters are read.
@@ -132,11 +120,9 @@ namespace Viscoplastic
     automatic
   };
 
-  inline const char *
-  choices(EventResolution)
-  {
-    return "true|false|automatic";
-  }
+  template <>
+  inline constexpr const char *choices<EventResolution> =
+    "true|false|automatic";
 
   /// How the contact pressure in the bound of Coulomb's law is obtained in
   /// unilateral contact.
@@ -147,11 +133,9 @@ namespace Viscoplastic
     newton
   };
 
-  inline const char *
-  choices(CoulombPressure)
-  {
-    return "lagged|fixed point|Newton";
-  }
+  template <>
+  inline constexpr const char *choices<CoulombPressure> =
+    "lagged|fixed point|Newton";
 
   enum class LinearSolver
   {
@@ -161,11 +145,9 @@ namespace Viscoplastic
     algebraic_multigrid
   };
 
-  inline const char *
-  choices(LinearSolver)
-  {
-    return "automatic|direct|multigrid|algebraic multigrid";
-  }
+  template <>
+  inline constexpr const char *choices<LinearSolver> =
+    "automatic|direct|multigrid|algebraic multigrid";
 
   /// `automatic' is replaced when parameters are read.
   enum class RefinementStrategy
@@ -176,11 +158,9 @@ namespace Viscoplastic
     automatic
   };
 
-  inline const char *
-  choices(RefinementStrategy)
-  {
-    return "none|residual|kelly|automatic";
-  }
+  template <>
+  inline constexpr const char *choices<RefinementStrategy> =
+    "none|residual|kelly|automatic";
 
 
 
@@ -213,16 +193,14 @@ namespace Viscoplastic
     stress_vector
   };
 
-  inline const char *
-  choices(RecordedField)
-  {
-    return "displacement|velocity|stress|von Mises stress|irreversible stress|"
-           "total strain|irreversible strain|creep strain|creep "
-           "rate|history|principal "
-           "stresses|temperature|slip|slip "
-           "rate|traction|bound|utilisation|stick|friction "
-           "work|contact pressure|gap|normal traction|stress vector";
-  }
+  template <>
+  inline constexpr const char *choices<RecordedField> =
+    "displacement|velocity|stress|von Mises stress|irreversible stress|"
+    "total strain|irreversible strain|creep strain|creep "
+    "rate|history|principal "
+    "stresses|temperature|slip|slip "
+    "rate|traction|bound|utilisation|stick|friction "
+    "work|contact pressure|gap|normal traction|stress vector";
 
   inline bool
   is_of_boundary(const RecordedField field)
@@ -259,7 +237,7 @@ namespace Viscoplastic
   std::string
   name_of(const Choice choice)
   {
-    return Utilities::split_string_list(choices(choice),
+    return Utilities::split_string_list(choices<Choice>,
                                         '|')[static_cast<std::size_t>(choice)];
   }
 
@@ -275,10 +253,10 @@ namespace Viscoplastic
   {
     prm.declare_entry(entry,
                       name_of(choice),
-                      Patterns::Selection(choices(choice)),
+                      Patterns::Selection(choices<Choice>),
                       documentation);
     prm.add_action(entry, [&choice](const std::string &value) {
-      const auto names = Utilities::split_string_list(choices(choice), '|');
+      const auto names = Utilities::split_string_list(choices<Choice>, '|');
       choice           = static_cast<Choice>(
         std::find(names.begin(), names.end(), value) - names.begin());
     });
@@ -294,7 +272,7 @@ namespace Viscoplastic
               const std::string &entry,
               std::set<Choice>  &chosen,
               const std::string &documentation,
-              const std::string &allowed = choices(Choice()))
+              const std::string &allowed = choices<Choice>)
   {
     prm.declare_entry(entry,
                       "",
@@ -302,7 +280,7 @@ namespace Viscoplastic
                       documentation);
     prm.add_action(entry, [&chosen](const std::string &value) {
       chosen.clear();
-      const auto names = Utilities::split_string_list(choices(Choice()), '|');
+      const auto names = Utilities::split_string_list(choices<Choice>, '|');
       for (const std::string &name : Utilities::split_string_list(value))
         if (!name.empty())
           chosen.insert(static_cast<Choice>(

@@ -36,8 +36,6 @@ namespace Viscoplastic
 
     /// The handler refers to the structs below.
     Parameters(const Parameters &) = delete;
-    Parameters &
-    operator=(const Parameters &) = delete;
 
     /// The first of the files, after which the scene is named.
     const std::string file;
@@ -124,9 +122,6 @@ namespace Viscoplastic
     void
     resolve_automatic_choices();
 
-    /// Make the name of the mesh file independent of the working directory.
-    void
-    locate_mesh_file(const std::vector<ParameterLine> &lines);
 
     /// Where values come from, by path of the entry; see origin_of().
     std::map<std::string, std::string> origins;

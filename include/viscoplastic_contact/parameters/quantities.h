@@ -27,16 +27,6 @@ namespace Viscoplastic
     std::string           entry_of_exponent = "Exponent";
   };
 
-  /// Return the unit of an entry from the words after `Unit: ' in its
-  /// description: "length", "time", "stress", "1" for pure numbers and others
-  /// in source/parameters/quantities.cc; for unknown words the dimension is
-  /// unknown. @p exponent is n or m in "1/(stress^n time)" or
-  /// "stress/length^m". Returns nothing for a description without `Unit: ': the
-  /// entry is no number.
-  std::optional<EntryUnit>
-  unit_of_entry(const std::string           &description,
-                const std::optional<double> &exponent = {});
-
   /// Replace each number with a unit in a text by that number in the units of
   /// the scene: `25 MPa*(1 - x/(2 km))' becomes `25*(1 - x/(2000))' with MPa
   /// and m. Throws ExcMessage with a part of a sentence if a unit does not

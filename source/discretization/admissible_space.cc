@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <deal.II/base/bounding_box.h>
 #include <deal.II/dofs/dof_tools.h>
 
 #include <viscoplastic_contact/base/messages.h>
@@ -7,6 +6,7 @@
 #include <viscoplastic_contact/discretization/conditions_at_nodes.h>
 #include <viscoplastic_contact/mesh/cell_order.h>
 #include <viscoplastic_contact/mesh/cell_shapes.h>
+#include <viscoplastic_contact/mesh/mesh_size.h>
 
 namespace Viscoplastic
 {
@@ -125,21 +125,6 @@ namespace Viscoplastic
 
 
 
-    /// Return the size of the coarse mesh, which all ranks know.
-    template <int dim>
-    double
-    size_of_coarse_mesh(const Triangulation<dim> &triangulation)
-    {
-      std::vector<Point<dim>> points;
-      for (const auto &cell : triangulation.cell_iterators_on_level(0))
-        for (const unsigned int v : cell->vertex_indices())
-          points.push_back(cell->vertex(v));
-      const auto corners = BoundingBox<dim>(points).get_boundary_points();
-      return corners.first.distance(corners.second);
-    }
-
-
-
     template <int dim>
     IndexSet
     relevant_dofs(const DoFHandler<dim>                          &dof_handler,
@@ -157,6 +142,19 @@ namespace Viscoplastic
             result.add_range(other.node * dim, (other.node + 1) * dim);
       result.compress();
       return result;
+    }
+
+
+
+    /// u := matrix u, for the components of a node.
+    template <int dim>
+    void
+    multiply(const Tensor<2, dim> &matrix, double *const u)
+    {
+      Tensor<1, dim> v;
+      std::copy_n(u, dim, v.begin_raw());
+      v = matrix * v;
+      std::copy_n(v.begin_raw(), dim, u);
     }
 
 
@@ -196,7 +194,7 @@ namespace Viscoplastic
               std::make_optional<std::size_t>(relevant.n_elements() - dim) :
               std::nullopt)
     , axial_length(scene.is_generalized() ?
-                     size_of_coarse_mesh(dof_handler.get_triangulation()) :
+                     body_diagonal(dof_handler.get_triangulation()) :
                      1.)
     , cells(owned_cells(dof_handler))
     , shapes(shapes_of<dim>(cells, scene.plane_model()))
@@ -351,15 +349,8 @@ namespace Viscoplastic
             cartesian[other + d] += weight * f[d];
       }
     for (const std::size_t n : rotated_nodes)
-      {
-        const NodalFrame<dim> &frame = frames[frame_of_node[n / dim]];
-        Tensor<1, dim>         f;
-        for (unsigned int d = 0; d < dim; ++d)
-          f[d] = cartesian[n + d];
-        f = transpose(frame.directions) * f;
-        for (unsigned int d = 0; d < dim; ++d)
-          cartesian[n + d] = f[d];
-      }
+      multiply(transpose(frames[frame_of_node[n / dim]].directions),
+               &cartesian[n]);
 
     const std::size_t n_owned = owned.n_elements();
     for (std::size_t i = 0; i < n_owned; ++i)
@@ -390,15 +381,8 @@ namespace Viscoplastic
     DistributedVector cartesian(in_frames);
     for (const std::size_t n : rotated_nodes)
       if (n >= first_owned && n < first_owned + owned.n_elements())
-        {
-          double        *entry = cartesian.begin() + (n - first_owned);
-          Tensor<1, dim> u;
-          for (unsigned int d = 0; d < dim; ++d)
-            u[d] = entry[d];
-          u = frames[frame_of_node[n / dim]].directions * u;
-          for (unsigned int d = 0; d < dim; ++d)
-            entry[d] = u[d];
-        }
+        multiply(frames[frame_of_node[n / dim]].directions,
+                 cartesian.begin() + (n - first_owned));
     if (!mortar_rows.empty())
       {
         ghosted = cartesian;
@@ -421,14 +405,8 @@ namespace Viscoplastic
     add_opposite(-1., ghosted, in_frames);
     for (const std::size_t n : rotated_nodes)
       if (n >= first_owned && n < first_owned + owned.n_elements())
-        {
-          Tensor<1, dim> v;
-          for (unsigned int d = 0; d < dim; ++d)
-            v[d] = in_frames.begin()[n - first_owned + d];
-          v = transpose(frames[frame_of_node[n / dim]].directions) * v;
-          for (unsigned int d = 0; d < dim; ++d)
-            in_frames.begin()[n - first_owned + d] = v[d];
-        }
+        multiply(transpose(frames[frame_of_node[n / dim]].directions),
+                 in_frames.begin() + (n - first_owned));
     for (const std::size_t i : hanging_entries)
       in_frames.begin()[i] = 0.;
   }

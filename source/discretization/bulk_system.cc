@@ -54,13 +54,6 @@ namespace Viscoplastic
         return space.owned.index_within_set(node[vertex] * dim) / dim;
       }
 
-      bool
-      hangs(const unsigned int vertex) const
-      {
-        return space.cartesian_hanging_nodes().is_constrained(node[vertex] *
-                                                              dim);
-      }
-
       /// Whether all cells around the vertex are owned or ghosts, so that this
       /// rank knows whether the node hangs.
       bool
@@ -73,12 +66,9 @@ namespace Viscoplastic
       Combination
       resolve(const unsigned int vertex) const
       {
-        if (!hangs(vertex))
-          return {{node[vertex], 1.}};
         Combination result;
         for (const auto &[dof, weight] :
-             *space.cartesian_hanging_nodes().get_constraint_entries(
-               node[vertex] * dim))
+             space.independent_nodes(node[vertex] * dim))
           result.push_back({dof / dim, weight});
         return result;
       }

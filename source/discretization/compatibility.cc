@@ -80,8 +80,7 @@ namespace Viscoplastic
                               0.);
       for (unsigned int d = 0; d < dim && !is_normal; ++d)
         {
-          Tensor<1, dim> axis;
-          axis[d] = 1.;
+          const Tensor<1, dim> axis = Point<dim>::unit_vector(d);
           if (condition.role == BoundaryRole::clamped)
             result.emplace_back(axis, 0.);
           else if (condition.is_glued())

@@ -8,18 +8,6 @@ namespace Viscoplastic
 {
   namespace
   {
-    /// The nodes with weights that a node depends on: itself unless it hangs.
-    std::vector<std::pair<types::global_dof_index, double>>
-    independent_nodes(const AffineConstraints<double> &hanging,
-                      const types::global_dof_index    dof)
-    {
-      if (!hanging.is_constrained(dof))
-        return {{dof, 1.}};
-      return *hanging.get_constraint_entries(dof);
-    }
-
-
-
     std::shared_ptr<const Utilities::MPI::Partitioner>
     with_ghosts(const IndexSet                      &own,
                 std::vector<types::global_dof_index> others,
@@ -52,7 +40,7 @@ namespace Viscoplastic
         }
     make_nodes();
     make_shares();
-    make_weights();
+    point_weights = sum_all_shares([](const Sample &) { return 1.; });
     if (!space.mortar_rows.empty())
       {
         std::set<types::boundary_id> other_sides;
@@ -175,11 +163,7 @@ namespace Viscoplastic
       double                  value;
     };
     std::vector<GlobalShare> global_shares;
-    const auto               is_one_of = [](const types::boundary_id               id,
-                              const std::vector<types::boundary_id> &ids) {
-      return std::find(ids.begin(), ids.end(), id) != ids.end();
-    };
-    const auto first_point = [&](const auto first_dof) {
+    const auto               first_point = [&](const auto first_dof) {
       return static_cast<types::global_dof_index>(
         ghosted.begin()[space.relevant.index_within_set(first_dof)]);
     };
@@ -189,53 +173,49 @@ namespace Viscoplastic
                                   QGauss<dim - 1>(2),
                                   update_values | update_JxW_values |
                                     update_quadrature_points);
-    for (const auto &cell : space.cells)
-      for (const unsigned int f : cell->face_indices())
-        if (cell->face(f)->at_boundary())
-          {
-            const types::boundary_id id        = cell->face(f)->boundary_id();
-            const auto              &condition = space.scene.boundary.at(id);
-            if (!condition.has_contact_points() ||
-                !space.scene.is_present(cell->material_id()))
-              continue;
-            face_values.reinit(cell, f);
-            for (const unsigned int q : face_values.quadrature_point_indices())
-              {
-                for (const unsigned int v : cell->vertex_indices())
-                  {
-                    const double value =
-                      face_values.shape_value(v * dim, q) * face_values.JxW(q);
-                    if (std::abs(value) < 1e-12 * face_values.JxW(q))
-                      continue; // not a vertex of the face
-                    const auto add = [&](const types::global_dof_index dof,
-                                         const double                  weight) {
-                      // The frame of a node that is held has no points.
-                      const NodalFrame<dim> &frame  = space.frame_at(dof);
-                      const auto             add_to = [&](const unsigned int p,
-                                              const bool         of_obstacle,
-                                              const auto        &ids) {
-                        if (is_one_of(id, ids))
-                          global_shares.push_back(
-                            {static_cast<unsigned int>(samples.size()),
-                             first_point(dof) + p,
-                             of_obstacle,
-                             weight * value});
-                      };
-                      unsigned int p = 0;
-                      for (const auto &plane : frame.planes)
-                        add_to(p++, false, plane.boundary_ids);
-                      for (const auto &obstacle : frame.obstacles)
-                        add_to(p++, true, obstacle.boundary_ids);
+    space.for_each_boundary_face([&](const std::size_t,
+                                     const auto        &cell,
+                                     const unsigned int f,
+                                     const auto        &condition) {
+      if (!condition.has_contact_points() ||
+          !space.scene.is_present(cell->material_id()))
+        return;
+      face_values.reinit(cell, f);
+      for (const unsigned int q : face_values.quadrature_point_indices())
+        {
+          for (const unsigned int v : cell->vertex_indices())
+            {
+              const double value =
+                face_values.shape_value(v * dim, q) * face_values.JxW(q);
+              if (std::abs(value) < 1e-12 * face_values.JxW(q))
+                continue; // not a vertex of the face
+              for (const auto &[dof, weight] :
+                   space.independent_nodes(cell->vertex_dof_index(v, 0)))
+                {
+                  // The frame of a node that is held has no points.
+                  const NodalFrame<dim>  &frame = space.frame_at(dof);
+                  types::global_dof_index point = first_point(dof);
+                  const auto              add_to =
+                    [&, share = weight * value](const bool  of_obstacle,
+                                                const auto &ids) {
+                      if (std::find(ids.begin(), ids.end(), condition.id) !=
+                          ids.end())
+                        global_shares.push_back(
+                          {static_cast<unsigned int>(samples.size()),
+                           point,
+                           of_obstacle,
+                           share});
+                      ++point;
                     };
-                    for (const auto &[dof, weight] :
-                         independent_nodes(space.cartesian_hanging_nodes(),
-                                           cell->vertex_dof_index(v, 0)))
-                      add(dof, weight);
-                  }
-                samples.push_back(
-                  {face_values.quadrature_point(q), &condition});
-              }
-          }
+                  for (const auto &plane : frame.planes)
+                    add_to(false, plane.boundary_ids);
+                  for (const auto &obstacle : frame.obstacles)
+                    add_to(true, obstacle.boundary_ids);
+                }
+            }
+          samples.push_back({face_values.quadrature_point(q), &condition});
+        }
+    });
 
     std::vector<types::global_dof_index> others;
     for (const GlobalShare &share : global_shares)
@@ -252,17 +232,18 @@ namespace Viscoplastic
 
 
   template <int dim>
-  void
-  ContactFace<dim>::make_weights()
+  std::vector<double>
+  ContactFace<dim>::sum_all_shares(
+    const std::function<double(const Sample &)> &factor) const
   {
-    const auto one = [](const Sample &) { return 1.; };
-    point_weights  = sum_shares(one);
+    std::vector<double> result = sum_shares(factor);
     if (any_obstacles)
       {
-        const std::vector<double> of_obstacles = sum_shares(one, true);
+        const std::vector<double> of_obstacles = sum_shares(factor, true);
         for (const unsigned int o : layout().obstacles())
-          point_weights[o] = of_obstacles[o];
+          result[o] = of_obstacles[o];
       }
+    return result;
   }
 
 
@@ -308,17 +289,10 @@ namespace Viscoplastic
       {
         const BoundaryCondition<dim> *const condition =
           &space.scene.boundary.at(id);
-        const auto is_here = [condition](const Sample &sample) {
+        part = sum_all_shares([condition](const Sample &sample) {
           return sample.condition == condition ? 1. : 0.;
-        };
-        part = sum_shares(is_here);
+        });
         part.resize(point_weights.size());
-        if (any_obstacles)
-          {
-            const std::vector<double> of_obstacles = sum_shares(is_here, true);
-            for (const unsigned int o : layout().obstacles())
-              part[o] = of_obstacles[o];
-          }
         for (unsigned int p = 0; p < part.size(); ++p)
           part[p] = point_weights[p] > 0. ? part[p] / point_weights[p] : 0.;
       }

@@ -10,32 +10,25 @@ namespace Viscoplastic
     , total_area(0.)
   {
     const AdmissibleSpace<dim> &space = stress_space.space;
-    std::size_t                 index = 0;
-    for (const auto &cell : space.cells)
-      {
-        for (const unsigned int f : cell->face_indices())
-          if (cell->face(f)->at_boundary())
-            {
-              const auto &condition =
-                space.scene.boundary.at(cell->face(f)->boundary_id());
-              // Glued contact is meant to carry tension.
-              if (condition.role != BoundaryRole::contact ||
-                  !condition.is_bilateral() || condition.is_glued() ||
-                  !space.scene.is_present(cell->material_id()))
-                continue;
-              Tensor<1, dim> normal;
-              for (const unsigned int v : cell->face(f)->vertex_indices())
-                normal += space.normal_at(cell->face(f)->vertex_dof_index(v, 0),
-                                          condition);
-              faces.push_back(
-                {index,
-                 normal / normal.norm(),
-                 cell->face(f)->measure() *
-                   extent(space.scene.plane_model(), cell->face(f)->center())});
-              total_area += faces.back().area;
-            }
-        ++index;
-      }
+    space.for_each_boundary_face([&](const std::size_t  c,
+                                     const auto        &cell,
+                                     const unsigned int f,
+                                     const auto        &condition) {
+      // Glued contact is meant to carry tension.
+      if (condition.role != BoundaryRole::contact ||
+          !condition.is_bilateral() || condition.is_glued() ||
+          !space.scene.is_present(cell->material_id()))
+        return;
+      const auto     face = cell->face(f);
+      Tensor<1, dim> normal;
+      for (const unsigned int v : face->vertex_indices())
+        normal += space.normal_at(face->vertex_dof_index(v, 0), condition);
+      faces.push_back(
+        {c,
+         normal / normal.norm(),
+         face->measure() * extent(space.scene.plane_model(), face->center())});
+      total_area += faces.back().area;
+    });
     total_area = Utilities::MPI::sum(total_area, space.communicator);
   }
 

@@ -17,30 +17,24 @@ namespace Viscoplastic
                                   space.dof_handler.get_fe(),
                                   QGauss<dim - 1>(2),
                                   update_values | update_JxW_values);
-    const auto &hanging = space.cartesian_hanging_nodes();
-    for (const auto &cell : space.cells)
-      for (const unsigned int f : cell->face_indices())
-        if (cell->at_boundary(f) &&
-            space.scene.is_present(cell->material_id()) &&
-            ids.count(cell->face(f)->boundary_id()) == 1)
-          {
-            face_values.reinit(cell, f);
-            for (const unsigned int v : cell->vertex_indices())
-              {
-                double weight = 0.;
-                for (const unsigned int q :
-                     face_values.quadrature_point_indices())
-                  weight +=
-                    face_values.shape_value(v * dim, q) * face_values.JxW(q);
-                const auto dof = cell->vertex_dof_index(v, 0);
-                if (!hanging.is_constrained(dof))
-                  weights(dof) += weight;
-                else
-                  for (const auto &[parent, share] :
-                       *hanging.get_constraint_entries(dof))
-                    weights(parent) += share * weight;
-              }
-          }
+    space.for_each_boundary_face([&](const std::size_t,
+                                     const auto        &cell,
+                                     const unsigned int f,
+                                     const auto        &condition) {
+      if (!space.scene.is_present(cell->material_id()) ||
+          ids.count(condition.id) == 0)
+        return;
+      face_values.reinit(cell, f);
+      for (const unsigned int v : cell->vertex_indices())
+        {
+          double weight = 0.;
+          for (const unsigned int q : face_values.quadrature_point_indices())
+            weight += face_values.shape_value(v * dim, q) * face_values.JxW(q);
+          for (const auto &[dof, share] :
+               space.independent_nodes(cell->vertex_dof_index(v, 0)))
+            weights(dof) += share * weight;
+        }
+    });
     weights.compress(VectorOperation::add);
     return weights;
   }

@@ -35,7 +35,7 @@ namespace Viscoplastic
             coupling.others.emplace_back(relevant.index_within_set(other.node *
                                                                    dim),
                                          other.weight);
-          // Scene::inspect_contact_pairs() ensures one coupling a node.
+          // Scene::inspect() ensures one coupling a node.
           Assert(coupling_of.count(coupling.node) == 0, ExcInternalError());
           coupling_of[coupling.node] = couplings.size();
           couplings.push_back(coupling);

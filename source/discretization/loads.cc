@@ -12,16 +12,14 @@ namespace Viscoplastic
     : space(space)
     , constant{space.owned_vector(), Tensor<1, dim>(), {}}
   {
-    for (const auto &cell : space.cells)
-      for (const unsigned int f : cell->face_indices())
-        if (cell->face(f)->at_boundary() &&
-            space.scene.is_present(cell->material_id()))
-          {
-            const auto &condition =
-              space.scene.boundary.at(cell->face(f)->boundary_id());
-            if (condition.carries_load())
-              faces.push_back({cell, f, &condition});
-          }
+    space.for_each_boundary_face([&](const std::size_t,
+                                     const Cell        &cell,
+                                     const unsigned int f,
+                                     const auto        &condition) {
+      if (space.scene.is_present(cell->material_id()) &&
+          condition.carries_load())
+        faces.push_back({cell, f, &condition});
+    });
     add(0., false, constant);
   }
 

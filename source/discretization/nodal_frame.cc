@@ -8,15 +8,6 @@ namespace Viscoplastic
     /// Directions closer than this (sine of the angle) count as one.
     constexpr double parallel_tolerance = 1e-6;
 
-    template <int dim>
-    Tensor<1, dim>
-    axis(const unsigned int d)
-    {
-      Tensor<1, dim> e;
-      e[d] = 1.;
-      return e;
-    }
-
 
 
     /// An orthonormal set of directions that grows.
@@ -131,7 +122,7 @@ namespace Viscoplastic
         {
           for (unsigned int i = 0; i < dim; ++i)
             if (form[i][i] > parallel_tolerance)
-              add_row(std::sqrt(form[i][i]) * axis<dim>(i));
+              add_row(std::sqrt(form[i][i]) * Point<dim>::unit_vector(i));
         }
       else
         {
@@ -203,7 +194,7 @@ namespace Viscoplastic
           if (which(*condition))
             for (unsigned int d = 0; d < dim; ++d)
               if (has_axis(*condition, d))
-                require(axis<dim>(d), condition->id, d);
+                require(Point<dim>::unit_vector(d), condition->id, d);
       };
       const auto all_axes = [](const auto &, const unsigned int) {
         return true;
@@ -246,7 +237,7 @@ namespace Viscoplastic
           double       length = -1.;
           for (unsigned int d = 0; d < dim; ++d)
             {
-              Tensor<1, dim> v = axis<dim>(d);
+              Tensor<1, dim> v = Point<dim>::unit_vector(d);
               for (const auto &q : basis.directions)
                 v -= (v * q) * q;
               if (v.norm() > length)
@@ -255,7 +246,7 @@ namespace Viscoplastic
                   best   = d;
                 }
             }
-          basis.add(axis<dim>(best));
+          basis.add(Point<dim>::unit_vector(best));
         }
     }
 

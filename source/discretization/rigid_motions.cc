@@ -7,6 +7,7 @@
 #include <viscoplastic_contact/base/types.h>
 #include <viscoplastic_contact/discretization/admissible_space.h>
 #include <viscoplastic_contact/discretization/seen_motions.h>
+#include <viscoplastic_contact/mesh/mesh_check.h>
 
 #include <algorithm>
 #include <cmath>
@@ -24,17 +25,13 @@ namespace Viscoplastic
 
 
 
-    /// The connected parts (by faces) of the present body. Without stages and
-    /// contact between bodies there is one.
-    struct BodyParts
+    /// The parts of the present body. Without stages and contact between bodies
+    /// there is one, and `of_cell` is empty.
+    struct BodyParts : ConnectedParts
     {
-      unsigned int n = 1;
       /// The parts that each boundary node belongs to, by its position in the
       /// list of boundary nodes.
       std::vector<std::set<unsigned int>> of_node;
-      /// The part of each cell of the coarse mesh, by
-      /// CellId::get_coarse_cell_id(); empty where there is one.
-      std::vector<unsigned int> of_cell;
     };
 
 
@@ -47,55 +44,26 @@ namespace Viscoplastic
       BodyParts   result;
       if (!space.scene.has_stages() && !space.scene.has_contact_pairs())
         {
+          result.n = 1;
           result.of_node.assign(nodes.size(), {0});
           return result;
         }
-      // All ranks have the coarse mesh, whose cells are present or absent as a
-      // whole.
-      const auto &triangulation = space.dof_handler.get_triangulation();
-      const auto  is_present    = [&space](const auto &cell) {
-        return space.scene.is_present(cell->material_id());
+      const auto is_present = [&space](const types::material_id id) {
+        return space.scene.is_present(id);
       };
-      unsigned int              &n_parts      = result.n;
-      std::vector<unsigned int> &part_of_cell = result.of_cell;
-      n_parts                                 = 0;
-      part_of_cell.assign(triangulation.n_cells(0),
-                          numbers::invalid_unsigned_int);
-      const auto part_of = [&part_of_cell](const auto &cell) -> unsigned int & {
-        return part_of_cell[cell->id().get_coarse_cell_id()];
-      };
-      for (const auto &first : triangulation.cell_iterators_on_level(0))
-        {
-          std::vector<typename Triangulation<dim>::cell_iterator> open{first};
-          const unsigned int n_found = n_parts;
-          while (!open.empty())
-            {
-              const auto cell = open.back();
-              open.pop_back();
-              if (!is_present(cell) ||
-                  part_of(cell) != numbers::invalid_unsigned_int)
-                continue;
-              part_of(cell) = n_found;
-              n_parts       = n_found + 1;
-              for (const unsigned int f : cell->face_indices())
-                if (!cell->at_boundary(f))
-                  open.push_back(cell->neighbor(f));
-            }
-        }
-
+      static_cast<ConnectedParts &>(result) =
+        connected_parts<dim>(space.dof_handler.get_triangulation(), is_present);
       std::map<types::global_dof_index, std::size_t> number;
       for (std::size_t i = 0; i < nodes.size(); ++i)
         number[nodes[i].first_dof] = i;
       result.of_node.resize(nodes.size());
       for (const auto &cell : space.dof_handler.active_cell_iterators())
-        if (!cell->is_artificial() && is_present(cell))
+        if (!cell->is_artificial() && is_present(cell->material_id()))
           for (const unsigned int v : cell->vertex_indices())
-            {
-              const auto node = number.find(cell->vertex_dof_index(v, 0));
-              if (node == number.end())
-                continue;
-              result.of_node[node->second].insert(part_of(cell));
-            }
+            if (const auto node = number.find(cell->vertex_dof_index(v, 0));
+                node != number.end())
+              result.of_node[node->second].insert(
+                result.of_cell[cell->id().get_coarse_cell_id()]);
       return result;
     }
 
@@ -113,30 +81,27 @@ namespace Viscoplastic
                                     QGauss<dim - 1>(2),
                                     update_quadrature_points |
                                       update_normal_vectors);
-      for (const auto &cell : space.cells)
-        for (const unsigned int f : cell->face_indices())
+      space.for_each_boundary_face([&](const std::size_t,
+                                       const auto        &cell,
+                                       const unsigned int f,
+                                       const auto        &condition) {
+        if (!condition.has_springs())
+          return;
+        const unsigned int part =
+          parts.of_cell.empty() ?
+            0 :
+            parts.of_cell[cell->id().get_coarse_cell_id()];
+        face_values.reinit(cell, f);
+        for (const unsigned int q : face_values.quadrature_point_indices())
           {
-            if (!cell->face(f)->at_boundary())
-              continue;
-            const auto &condition =
-              space.scene.boundary.at(cell->face(f)->boundary_id());
-            if (!condition.has_springs())
-              continue;
-            const unsigned int part =
-              parts.of_cell.empty() ?
-                0 :
-                parts.of_cell[cell->id().get_coarse_cell_id()];
-            face_values.reinit(cell, f);
-            for (const unsigned int q : face_values.quadrature_point_indices())
-              {
-                const Point<dim> &x = face_values.quadrature_point(q);
-                const auto        K =
-                  condition.spring_stiffness(x, face_values.normal_vector(q));
-                if (const double size = K.norm(); size > 0.)
-                  for (unsigned int d = 0; d < dim; ++d)
-                    act(part, x, K * Point<dim>::unit_vector(d) / size);
-              }
+            const Point<dim> &x = face_values.quadrature_point(q);
+            const auto        K =
+              condition.spring_stiffness(x, face_values.normal_vector(q));
+            if (const double size = K.norm(); size > 0.)
+              for (unsigned int d = 0; d < dim; ++d)
+                act(part, x, K * Point<dim>::unit_vector(d) / size);
           }
+      });
     }
 
 

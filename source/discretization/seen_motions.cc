@@ -150,11 +150,7 @@ namespace Viscoplastic
       }
     else
       for (unsigned int d = 0; d < dim; ++d)
-        {
-          Tensor<1, dim> axis;
-          axis[d]         = 1.;
-          result[dim + d] = cross_product_3d(axis, x);
-        }
+        result[dim + d] = cross_product_3d(Point<dim>::unit_vector(d), x);
     return result;
   }
 

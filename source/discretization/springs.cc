@@ -15,27 +15,25 @@ namespace Viscoplastic
                                   update_values | update_JxW_values |
                                     update_quadrature_points |
                                     update_normal_vectors);
-    for (const auto &cell : space.cells)
-      for (const unsigned int f : cell->face_indices())
-        if (cell->face(f)->at_boundary())
-          {
-            const auto &condition =
-              space.scene.boundary.at(cell->face(f)->boundary_id());
-            if (!condition.has_springs())
-              continue;
-            face_values.reinit(cell, f);
-            Face face{cell, f, {}};
-            for (const unsigned int q : face_values.quadrature_point_indices())
-              {
-                const auto K =
-                  condition.spring_stiffness(face_values.quadrature_point(q),
-                                             face_values.normal_vector(q));
-                face.stiffness[q] = K * face_values.JxW(q);
-                for (unsigned int v = 0; v < n_nodes; ++v)
-                  shape_values[f][q][v] = face_values.shape_value(v * dim, q);
-              }
-            faces.push_back(face);
-          }
+    space.for_each_boundary_face([&](const std::size_t,
+                                     const auto        &cell,
+                                     const unsigned int f,
+                                     const auto        &condition) {
+      if (!condition.has_springs())
+        return;
+      face_values.reinit(cell, f);
+      Face face{cell, f, {}};
+      for (const unsigned int q : face_values.quadrature_point_indices())
+        {
+          face.stiffness[q] =
+            condition.spring_stiffness(face_values.quadrature_point(q),
+                                       face_values.normal_vector(q)) *
+            face_values.JxW(q);
+          for (unsigned int v = 0; v < n_nodes; ++v)
+            shape_values[f][q][v] = face_values.shape_value(v * dim, q);
+        }
+      faces.push_back(face);
+    });
   }
 
 

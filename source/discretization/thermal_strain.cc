@@ -8,30 +8,6 @@ namespace Viscoplastic
   namespace
   {
     template <int dim>
-    bool
-    any_expands(const Scene<dim> &scene)
-    {
-      return std::any_of(scene.materials.begin(),
-                         scene.materials.end(),
-                         [](const auto &material) {
-                           return material->thermal_expansion.has_value();
-                         });
-    }
-
-
-
-    /// Whether z has parts other than the thermal stress.
-    template <int dim>
-    bool
-    has_other_stress(const Scene<dim> &scene)
-    {
-      return scene.has_viscosity() || scene.initial_displacement ||
-             scene.initial_stress || scene.has_stages();
-    }
-
-
-
-    template <int dim>
     void
     require_absolute(const Material<dim> &material,
                      const double         T,
@@ -51,10 +27,10 @@ namespace Viscoplastic
 
   template <int dim>
   ThermalStrain<dim>::ThermalStrain(const StressSpace<dim> &stress_space)
-    : expands(any_expands(stress_space.space.scene))
+    : expands(stress_space.space.scene.has_thermal_strain())
     , varies_in_time(
         stress_space.space.scene.temperature->value.depends_on_time())
-    , is_alone(!has_other_stress(stress_space.space.scene))
+    , is_alone(!stress_space.space.scene.has_other_irreversible_stress())
     , stress_space(stress_space)
   {
     if (!expands)

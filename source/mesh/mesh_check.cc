@@ -120,40 +120,60 @@ namespace Viscoplastic
 
 
   template <int dim>
+  ConnectedParts
+  connected_parts(
+    const Triangulation<dim>                            &triangulation,
+    const std::function<bool(const types::material_id)> &is_present)
+  {
+    constexpr unsigned int none = numbers::invalid_unsigned_int;
+    ConnectedParts         result;
+    result.of_cell.assign(triangulation.n_cells(0), none);
+    const auto part_of = [&result](const auto &cell) -> unsigned int & {
+      return result.of_cell[cell->id().get_coarse_cell_id()];
+    };
+    for (const auto &first : triangulation.cell_iterators_on_level(0))
+      {
+        if (part_of(first) != none || !is_present(first->material_id()))
+          continue;
+        std::vector<typename Triangulation<dim>::cell_iterator> open{first};
+        while (!open.empty())
+          {
+            const auto cell = open.back();
+            open.pop_back();
+            if (part_of(cell) != none || !is_present(cell->material_id()))
+              continue;
+            part_of(cell) = result.n;
+            for (const unsigned int f : cell->face_indices())
+              if (!cell->at_boundary(f))
+                open.push_back(cell->neighbor(f));
+          }
+        ++result.n;
+      }
+    return result;
+  }
+
+
+
+  template <int dim>
   void
   check_connection(
     const parallel::distributed::Triangulation<dim> &triangulation)
   {
-    std::vector<bool> seen(triangulation.n_cells(0), false);
-    unsigned int      n_parts = 0;
-    Point<dim>        first, other;
-    for (const auto &start : triangulation.cell_iterators_on_level(0))
-      {
-        if (seen[start->index()])
-          continue;
-        (n_parts == 0 ? first : other) = start->center();
-        ++n_parts;
-        seen[start->index()] = true;
-        std::vector<typename Triangulation<dim>::cell_iterator> front{start};
-        while (!front.empty())
-          {
-            const auto cell = front.back();
-            front.pop_back();
-            for (const unsigned int f : cell->face_indices())
-              if (!cell->at_boundary(f) && !seen[cell->neighbor(f)->index()])
-                {
-                  seen[cell->neighbor(f)->index()] = true;
-                  front.push_back(cell->neighbor(f));
-                }
-          }
-      }
-    if (n_parts != 1)
-      refuse("The mesh consists of " + std::to_string(n_parts) +
-             " parts that share no faces, e.g. the cells with the centers (" +
-             as_text(first) + ") and (" + as_text(other) +
-             ") are not connected. Bodies of their own need contact with each "
-             "other ('Against'); the cells of one body have their nodes in "
-             "common (merge nodes that are at the same place).");
+    const ConnectedParts parts =
+      connected_parts<dim>(triangulation,
+                           [](const types::material_id) { return true; });
+    if (parts.n == 1)
+      return;
+    std::vector<Point<dim>> centers; // of the first cells of parts
+    for (const auto &cell : triangulation.cell_iterators_on_level(0))
+      if (parts.of_cell[cell->id().get_coarse_cell_id()] == centers.size())
+        centers.push_back(cell->center());
+    refuse("The mesh consists of " + std::to_string(parts.n) +
+           " parts that share no faces, e.g. the cells with the centers (" +
+           as_text(centers.front()) + ") and (" + as_text(centers.back()) +
+           ") are not connected. Bodies of their own need contact with each "
+           "other ('Against'); the cells of one body have their nodes in "
+           "common (merge nodes that are at the same place).");
   }
 
 
@@ -174,5 +194,6 @@ namespace Viscoplastic
 
 
   VISCOPLASTIC_INSTANTIATE(check_mesh);
+  VISCOPLASTIC_INSTANTIATE(connected_parts);
   VISCOPLASTIC_INSTANTIATE(check_connection);
 } // namespace Viscoplastic

@@ -59,6 +59,23 @@ namespace Viscoplastic
 
 
 
+    /// Return the numbers in a list; an empty one if any is no number.
+    std::vector<double>
+    list_of_numbers(const std::string &text)
+    {
+      std::vector<double> values;
+      for (const std::string &part : Utilities::split_string_list(text, ','))
+        {
+          const auto value = number_of(part);
+          if (!value || !std::isfinite(*value))
+            return {};
+          values.push_back(*value);
+        }
+      return values;
+    }
+
+
+
     /// Check the numbers of cells: deal.II converts negative ones to huge ones,
     /// and tries to allocate the memory for huge ones.
     void
@@ -80,18 +97,17 @@ namespace Viscoplastic
           if (place >= arguments.size())
             return; // deal.II reports it
           numbers += (numbers.empty() ? "" : ", ") + arguments[place];
-          for (const std::string &text :
-               Utilities::split_string_list(arguments[place], ','))
+          const std::vector<double> values = list_of_numbers(arguments[place]);
+          if (values.empty())
+            return; // deal.II reports it
+          for (const double value : values)
             {
-              const auto value = number_of(text);
-              if (!value)
-                return; // deal.II reports it
-              is_negative = is_negative || *value < 0.;
+              is_negative = is_negative || value < 0.;
               // Zero, where allowed, lets deal.II choose a small number.
               if (counts.kind == CellCounts::sum)
-                total += *value;
+                total += value;
               else
-                total *= std::pow(std::max(1., *value),
+                total *= std::pow(std::max(1., value),
                                   counts.kind == CellCounts::power ? dim : 1);
             }
         }
@@ -106,23 +122,6 @@ namespace Viscoplastic
                       total,
                       "'Geometry/Arguments' = " + excerpt(geometry.arguments),
                       communicator);
-    }
-
-
-
-    /// Return the numbers in a list; an empty one if any is no number.
-    std::vector<double>
-    list_of_numbers(const std::string &text)
-    {
-      std::vector<double> values;
-      for (const std::string &part : Utilities::split_string_list(text, ','))
-        {
-          const auto value = number_of(part);
-          if (!value || !std::isfinite(*value))
-            return {};
-          values.push_back(*value);
-        }
-      return values;
     }
 
 

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <deal.II/base/function_parser.h>
 #include <deal.II/base/mpi.h>
 #include <deal.II/base/quadrature_lib.h>
 #include <deal.II/fe/fe_nothing.h>
@@ -7,6 +6,7 @@
 
 #include <viscoplastic_contact/base/expression.h>
 #include <viscoplastic_contact/base/messages.h>
+#include <viscoplastic_contact/base/table_parser.h>
 #include <viscoplastic_contact/base/types.h>
 #include <viscoplastic_contact/mesh/mesh_ids.h>
 
@@ -27,10 +27,7 @@ namespace Viscoplastic
     public:
       IdExpression(const std::string &text, const std::string &entry)
         : entry(entry)
-        , parser(parse_expression<dim>(
-            text,
-            FunctionParser<dim>::default_variable_names() + ",id",
-            entry))
+        , parser(parse_expression(text, coordinate_names<dim> + ",id", entry))
       {}
 
       /// Return the new id of a face or cell; @p what names it in messages.
@@ -67,8 +64,9 @@ namespace Viscoplastic
       unsigned int
       value(const Point<dim> &x, const unsigned int old_id)
       {
-        parser->set_time(old_id);
-        const double result = parser->value(x);
+        std::copy(x.begin_raw(), x.end_raw(), parser->variables.begin());
+        parser->variables.back() = old_id;
+        const double result      = parser->value();
         if (std::abs(result - std::round(result)) <= 1e-6 && result > -0.5 &&
             result < largest_id + 0.5)
           return static_cast<unsigned int>(std::round(result));
@@ -77,8 +75,8 @@ namespace Viscoplastic
                std::to_string(largest_id) + ".");
       }
 
-      const std::string                          entry;
-      const std::unique_ptr<FunctionParser<dim>> parser;
+      const std::string                       entry;
+      const std::shared_ptr<ParserWithTables> parser;
     };
   } // namespace
 

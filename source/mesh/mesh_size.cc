@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <deal.II/base/bounding_box.h>
 #include <deal.II/base/exceptions.h>
 #include <deal.II/base/mpi.h>
-#include <deal.II/grid/grid_tools.h>
 
 #include <viscoplastic_contact/base/messages.h>
 #include <viscoplastic_contact/base/types.h>
@@ -120,8 +120,11 @@ namespace Viscoplastic
   double
   body_diagonal(const Triangulation<dim> &triangulation)
   {
-    const auto corners =
-      GridTools::compute_bounding_box(triangulation).get_boundary_points();
+    std::vector<Point<dim>> points;
+    for (const auto &cell : triangulation.cell_iterators_on_level(0))
+      for (const unsigned int v : cell->vertex_indices())
+        points.push_back(cell->vertex(v));
+    const auto corners = BoundingBox<dim>(points).get_boundary_points();
     return corners.first.distance(corners.second);
   }
 

@@ -10,11 +10,6 @@ namespace Viscoplastic
 {
   namespace
   {
-    const std::vector<std::string> kinds{"boundary",
-                                         "material",
-                                         "point",
-                                         "line"};
-
     constexpr std::size_t longest_name = 40;
 
 
@@ -34,13 +29,8 @@ namespace Viscoplastic
                 name.find_first_of(";:,=/#'\"\\{}") == std::string::npos,
               "begins with a digit or has one of the characters ; : , = / # "
               "' \" \\ { }; take letters, digits, blanks, - and _.");
-      require(std::none_of(kinds.begin(),
-                           kinds.end(),
-                           [&](const std::string &kind) {
-                             return std::regex_match(name,
-                                                     std::regex(kind +
-                                                                " *\\d*"));
-                           }),
+      static const std::regex number("(boundary|material|point|line) *\\d*");
+      require(!std::regex_match(name, number),
               "is what a place without a name is called; take another one.");
     }
   } // namespace

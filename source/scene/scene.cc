@@ -21,6 +21,140 @@ namespace Viscoplastic
                                                              plane_model) :
                         nullptr;
     }
+
+
+
+    /// Read N or eps_zz, of which at most one is given. Throws ExcMessage.
+    template <int dim>
+    void
+    read_axial_datum(Scene<dim> &scene)
+    {
+      const auto read = [&](const std::string &text, const std::string &name) {
+        const std::string              entry = "Loads/" + name;
+        std::optional<Expression<dim>> result;
+        if (Utilities::trim(text).empty())
+          return result;
+        if (!scene.is_generalized())
+          refuse("'" + entry +
+                 "' is that of 'Geometry/Plane model' = generalized strain.");
+        result.emplace(text, entry);
+        if (result->depends_on_position())
+          refuse("'" + entry + "' = " + text +
+                 " depends on the place, but it is one for the whole section.");
+        return result;
+      };
+      scene.axial_force =
+        read(scene.parameters.loads.axial_force, "Axial force");
+      scene.axial_strain =
+        read(scene.parameters.loads.axial_strain, "Axial strain");
+      if (scene.axial_force && scene.axial_strain)
+        refuse("'Loads/Axial force' and 'Loads/Axial strain' follow from each "
+               "other; leave one of them out.");
+      if (scene.is_generalized() && !scene.axial_strain && !scene.axial_force)
+        scene.axial_force.emplace("0", "Loads/Axial force");
+    }
+
+
+
+    /// Set the primary sides of contact between bodies. Throws ExcMessage.
+    template <int dim>
+    void
+    find_contact_pairs(Scene<dim> &scene)
+    {
+      for (auto &[id, condition] : scene.boundary)
+        {
+          const std::string name =
+            Utilities::trim(scene.parameters.boundaries.at(id).against);
+          if (name.empty() || condition.role != BoundaryRole::contact ||
+              condition.has_given_stress())
+            continue;
+          const std::string entry =
+            "'Boundary " + std::to_string(id) + "/Against' = " + excerpt(name);
+          const bool is_number =
+            name.find_first_not_of("0123456789") == std::string::npos;
+          const auto place = scene.names.find(
+            is_number && name.size() < 9 ? "boundary " + name : name);
+          if (!place || place->kind != "boundary" ||
+              scene.boundary.count(place->number) != 1)
+            refuse(entry + " is no boundary of the scene.");
+          const auto &other = scene.boundary.at(place->number);
+          if (other.role != BoundaryRole::free &&
+              other.role != BoundaryRole::traction)
+            refuse(
+              entry +
+              " must have the role free (or traction): what happens between "
+              "the two sides is said once, at boundary " +
+              std::to_string(id) + ".");
+          if (condition.foundation_motion)
+            refuse(
+              "'Boundary " + std::to_string(id) +
+              "/Foundation motion' moves a rigid foundation, but 'Against' "
+              "says that another body is there.");
+          if (scene.exact_solution && scene.exact_solution->makes_data)
+            refuse(entry +
+                   ": 'Exact solution/Data' = solution makes no data for "
+                   "two bodies; use 'Data' = scene.");
+          condition.against = place->number;
+        }
+    }
+
+
+
+    /// Set the data of the exact solution; refuse other data beside them.
+    template <int dim>
+    void
+    derive_data(Scene<dim> &scene)
+    {
+      for (const auto &[name, text] :
+           {std::make_pair("Loads/Body force",
+                           scene.parameters.loads.body_force),
+            std::make_pair("Loads/Axial force",
+                           scene.parameters.loads.axial_force),
+            std::make_pair("Loads/Axial strain",
+                           scene.parameters.loads.axial_strain),
+            std::make_pair("Initial state/Displacement",
+                           scene.parameters.initial_state.displacement),
+            std::make_pair("Initial state/Stress",
+                           scene.parameters.initial_state.stress)})
+        if (!Utilities::trim(text).empty())
+          refuse("'" + std::string(name) +
+                 "' is given, but 'Exact solution/Data' = solution makes it; "
+                 "leave one of them out.");
+      if (scene.parameters.initial_state.equilibrate)
+        refuse(
+          "'Initial state/Equilibrate' contradicts 'Exact solution/Data' = "
+          "solution, whose initial data are those of the solution.");
+
+      const ExactSolution<dim> &solution = *scene.exact_solution;
+      const std::string         stress   = "Exact solution/Stress",
+                        displacement     = "Exact solution/Displacement";
+      std::vector<typename Expression<dim>::Function> stresses;
+      for (const auto &[i, j] : stress_components<dim>())
+        stresses.push_back(
+          [&solution, i = i, j = j](const Point<dim> &x, const double t) {
+            return solution.stress(x, t)[i][j];
+          });
+      scene.body_force.emplace(
+        [&solution](const Point<dim> &x, const double t) {
+          return solution.body_force(x, t);
+        },
+        stress);
+      if (scene.is_generalized())
+        {
+          scene.axial_force.reset();
+          scene.axial_strain.emplace(
+            [&solution](const Point<dim> &, const double t) {
+              return solution.axial_strain(t);
+            },
+            displacement);
+        }
+      scene.initial_displacement.emplace(
+        [&solution](const Point<dim> &x, const double t) {
+          return solution.displacement(x, t);
+        },
+        displacement);
+      scene.initial_stress.emplace(stresses, stress);
+    }
   } // namespace
 
 
@@ -49,17 +183,17 @@ namespace Viscoplastic
     if (dim != 2 && plane_model() != PlaneModel::strain)
       refuse("'Geometry/Plane model' = " + name_of(plane_model()) +
              " is that of meshes in 2D, but 'Dimension' = 3.");
-    read_axial_datum();
+    read_axial_datum(*this);
     const ExactSolution<dim> *source_of_data =
       exact_solution && exact_solution->makes_data ? exact_solution.get() :
                                                      nullptr;
     for (const auto &[id, boundary_parameters] : parameters.boundaries)
       boundary.emplace(
         id, BoundaryCondition<dim>(id, boundary_parameters, source_of_data));
-    find_contact_pairs();
+    find_contact_pairs(*this);
     supports = read_supports<dim>(parameters.supports);
     if (source_of_data)
-      derive_data();
+      derive_data(*this);
 
     const OutputParameters &output = parameters.output;
     output_points                  = read_output_points<dim>(output.points);
@@ -77,128 +211,6 @@ namespace Viscoplastic
         axial_strain ? std::optional(QuantityOfInterest::Kind::axial_force) :
                        std::nullopt,
         names);
-  }
-
-
-
-  template <int dim>
-  void
-  Scene<dim>::read_axial_datum()
-  {
-    const auto read = [&](const std::string &text, const std::string &name) {
-      const std::string              entry = "Loads/" + name;
-      std::optional<Expression<dim>> result;
-      if (Utilities::trim(text).empty())
-        return result;
-      if (!is_generalized())
-        refuse("'" + entry +
-               "' is that of 'Geometry/Plane model' = generalized strain.");
-      result.emplace(text, entry);
-      if (result->depends_on_position())
-        refuse("'" + entry + "' = " + text +
-               " depends on the place, but it is one for the whole section.");
-      return result;
-    };
-    axial_force  = read(parameters.loads.axial_force, "Axial force");
-    axial_strain = read(parameters.loads.axial_strain, "Axial strain");
-    if (axial_force && axial_strain)
-      refuse("'Loads/Axial force' and 'Loads/Axial strain' follow from each "
-             "other; leave one of them out.");
-    if (is_generalized() && !axial_strain && !axial_force)
-      axial_force.emplace("0", "Loads/Axial force");
-  }
-
-
-
-  template <int dim>
-  void
-  Scene<dim>::find_contact_pairs()
-  {
-    for (auto &[id, condition] : boundary)
-      {
-        const std::string name =
-          Utilities::trim(parameters.boundaries.at(id).against);
-        if (name.empty() || condition.role != BoundaryRole::contact ||
-            condition.has_given_stress())
-          continue;
-        const std::string entry =
-          "'Boundary " + std::to_string(id) + "/Against' = " + excerpt(name);
-        const bool is_number =
-          name.find_first_not_of("0123456789") == std::string::npos;
-        const auto place =
-          names.find(is_number && name.size() < 9 ? "boundary " + name : name);
-        if (!place || place->kind != "boundary" ||
-            boundary.count(place->number) != 1)
-          refuse(entry + " is no boundary of the scene.");
-        const auto &other = boundary.at(place->number);
-        if (other.role != BoundaryRole::free &&
-            other.role != BoundaryRole::traction)
-          refuse(entry +
-                 " must have the role free (or traction): what happens between "
-                 "the two sides is said once, at boundary " +
-                 std::to_string(id) + ".");
-        if (condition.foundation_motion)
-          refuse("'Boundary " + std::to_string(id) +
-                 "/Foundation motion' moves a rigid foundation, but 'Against' "
-                 "says that another body is there.");
-        if (exact_solution && exact_solution->makes_data)
-          refuse(entry + ": 'Exact solution/Data' = solution makes no data for "
-                         "two bodies; use 'Data' = scene.");
-        condition.against = place->number;
-      }
-  }
-
-
-
-  template <int dim>
-  void
-  Scene<dim>::derive_data()
-  {
-    for (const auto &[name, text] :
-         {std::make_pair("Loads/Body force", parameters.loads.body_force),
-          std::make_pair("Loads/Axial force", parameters.loads.axial_force),
-          std::make_pair("Loads/Axial strain", parameters.loads.axial_strain),
-          std::make_pair("Initial state/Displacement",
-                         parameters.initial_state.displacement),
-          std::make_pair("Initial state/Stress",
-                         parameters.initial_state.stress)})
-      if (!Utilities::trim(text).empty())
-        refuse("'" + std::string(name) +
-               "' is given, but 'Exact solution/Data' = solution makes it; "
-               "leave one of them out.");
-    if (parameters.initial_state.equilibrate)
-      refuse("'Initial state/Equilibrate' contradicts 'Exact solution/Data' = "
-             "solution, whose initial data are those of the solution.");
-
-    const ExactSolution<dim> &solution = *exact_solution;
-    const std::string         stress   = "Exact solution/Stress",
-                      displacement     = "Exact solution/Displacement";
-    std::vector<typename Expression<dim>::Function> stresses;
-    for (const auto &[i, j] : stress_components<dim>())
-      stresses.push_back(
-        [&solution, i = i, j = j](const Point<dim> &x, const double t) {
-          return solution.stress(x, t)[i][j];
-        });
-    body_force.emplace(
-      [&solution](const Point<dim> &x, const double t) {
-        return solution.body_force(x, t);
-      },
-      stress);
-    if (is_generalized())
-      {
-        axial_force.reset();
-        axial_strain.emplace(
-          [&solution](const Point<dim> &, const double t) {
-            return solution.axial_strain(t);
-          },
-          displacement);
-      }
-    initial_displacement.emplace(
-      [&solution](const Point<dim> &x, const double t) {
-        return solution.displacement(x, t);
-      },
-      displacement);
-    initial_stress.emplace(stresses, stress);
   }
 
 

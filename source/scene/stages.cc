@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <viscoplastic_contact/base/messages.h>
 #include <viscoplastic_contact/base/types.h>
+#include <viscoplastic_contact/mesh/mesh_check.h>
 #include <viscoplastic_contact/scene/scene.h>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
 #include <optional>
 
 // The stages of construction of a scene: materials that come and go.
@@ -149,33 +149,21 @@ namespace Viscoplastic
     if (others.empty())
       return;
 
-    // Mark each vertex by the least vertex index of its connected body.
-    std::vector<unsigned int> first(triangulation.n_vertices());
-    std::iota(first.begin(), first.end(), 0);
-    for (bool is_done = false; !is_done;)
-      {
-        is_done = true;
-        for (const auto &cell : triangulation.cell_iterators_on_level(0))
-          {
-            unsigned int least = first[cell->vertex_index(0)];
-            for (const unsigned int v : cell->vertex_indices())
-              least = std::min(least, first[cell->vertex_index(v)]);
-            for (const unsigned int v : cell->vertex_indices())
-              {
-                is_done &= first[cell->vertex_index(v)] == least;
-                first[cell->vertex_index(v)] = least;
-              }
-          }
-      }
+    const ConnectedParts bodies =
+      connected_parts<dim>(triangulation,
+                           [](const types::material_id) { return true; });
+    const auto body_of = [&bodies](const auto &cell) {
+      return bodies.of_cell[cell->id().get_coarse_cell_id()];
+    };
     for (unsigned int n = 0; n <= stage_ends.size(); ++n)
       {
         enter_stage(n);
         std::set<unsigned int> present;
         for (const auto &cell : triangulation.cell_iterators_on_level(0))
           if (is_present(cell->material_id()))
-            present.insert(first[cell->vertex_index(0)]);
+            present.insert(body_of(cell));
         for (const auto &cell : others)
-          if (present.count(first[cell->vertex_index(0)]) != 1)
+          if (present.count(body_of(cell)) != 1)
             refuse("'" + lasting_material(cell->material_id()).section +
                    "' is absent for a time, and with it the whole of a body "
                    "that another one is 'Against'. Let the body that comes or "

@@ -150,6 +150,18 @@ namespace Viscoplastic
       return hanging_cartesian;
     }
 
+    /// Return the first degrees of freedom of the nodes on which a node
+    /// depends, with their weights: its own unless it hangs.
+    std::vector<std::pair<types::global_dof_index, double>>
+    independent_nodes(const types::global_dof_index first_dof) const
+    {
+      const auto *const parents =
+        hanging_cartesian.get_constraint_entries(first_dof);
+      if (parents == nullptr)
+        return {{first_dof, 1.}};
+      return *parents;
+    }
+
     /// Return a vector of owned entries, and one with ghosts on `relevant`.
     DistributedVector
     owned_vector() const
@@ -233,6 +245,21 @@ namespace Viscoplastic
               condition.normal,
               condition.normal_varies ? surface_normals.get() : nullptr,
               scene};
+    }
+
+    /// Call @p act (number of the cell, cell, number of the face, condition)
+    /// for the boundary faces of the owned cells.
+    template <typename Action>
+    void
+    for_each_boundary_face(const Action &act) const
+    {
+      for (std::size_t c = 0; c < cells.size(); ++c)
+        for (const unsigned int f : cells[c]->face_indices())
+          if (cells[c]->face(f)->at_boundary())
+            act(c,
+                cells[c],
+                f,
+                scene.boundary.at(cells[c]->face(f)->boundary_id()));
     }
 
     /// Return, for each owned index, whether the degree of freedom is

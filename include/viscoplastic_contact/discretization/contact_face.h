@@ -281,8 +281,6 @@ namespace Viscoplastic
     void
     make_shares();
     void
-    make_weights();
-    void
     make_compliance();
     void
     make_area_shares();
@@ -295,6 +293,9 @@ namespace Viscoplastic
     sum_shares(const std::function<double(const Sample &)> &factor,
                const bool                       of_obstacles = false,
                const std::vector<double> *const slip_rates   = nullptr) const;
+    /// The sums for points of friction and obstacles alike. Collective.
+    std::vector<double>
+    sum_all_shares(const std::function<double(const Sample &)> &factor) const;
 
     const AdmissibleSpace<dim>                  &space;
     FaceRestriction                              face_restriction;

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
-#include <deal.II/base/bounding_box.h>
 #include <deal.II/base/exceptions.h>
 #include <deal.II/base/geometry_info.h>
 #include <deal.II/base/quadrature_lib.h>
@@ -138,15 +137,6 @@ namespace Viscoplastic
       return GeometryInfo<dim - 1>::d_linear_shape_function(xi, v);
     }
   };
-
-
-
-  template <int d>
-  BoundingBox<d>
-  box_of(const PlaneFace<d> &face)
-  {
-    return BoundingBox<d>(std::vector<Point<d>>(face.begin(), face.end()));
-  }
 
 
 

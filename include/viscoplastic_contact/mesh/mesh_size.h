@@ -28,7 +28,8 @@ namespace Viscoplastic
   bytes_of_coarse_cells(const unsigned int dim, const double n_coarse_cells);
 
 
-  /// Return the diagonal of the bounding box of the coarse vertices.
+  /// Return the diagonal of the bounding box of the coarse mesh, which all
+  /// ranks know.
   template <int dim>
   double
   body_diagonal(const dealii::Triangulation<dim> &triangulation);

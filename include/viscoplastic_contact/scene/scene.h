@@ -203,8 +203,15 @@ namespace Viscoplastic
     bool
     has_irreversible_stress() const
     {
+      return has_other_irreversible_stress() || has_thermal_strain();
+    }
+
+    /// The same without thermal strain.
+    bool
+    has_other_irreversible_stress() const
+    {
       return has_viscosity() || initial_displacement || initial_stress ||
-             has_thermal_strain() || has_stages();
+             has_stages();
     }
 
     /// Whether some material expands with temperature.
@@ -404,38 +411,7 @@ namespace Viscoplastic
 
   private:
     void
-    inspect_boundary_ids(const std::set<types::boundary_id> &ids) const;
-
-    /// Refuse curved contact boundaries with edges, given the largest angle
-    /// between adjacent faces; warn if the angle is suspicious.
-    void
-    inspect_curve(const types::boundary_id id, const double angle);
-
-    void
-    inspect_flatness(
-      const parallel::distributed::Triangulation<dim> &triangulation);
-
-    /// Refuse sections of bodies of revolution that cross the axis or whose
-    /// nodes on the axis are free to move off it. Collective.
-    void
-    inspect_axis(
-      const parallel::distributed::Triangulation<dim> &triangulation) const;
-
-    /// Warn of entries of boundaries and of the initial state without effect.
-    void
-    inspect_unused_entries();
-
-    /// Warn of boundaries with prescribed displacement that touch Gamma_3.
-    void
-    inspect_junctions(
-      const parallel::distributed::Triangulation<dim> &triangulation);
-
-    void
     make_materials(const std::set<types::material_id> &ids);
-
-    /// Warn of a temperature without effect or probably not absolute.
-    void
-    inspect_temperature(const Triangulation<dim> &triangulation);
 
     /// Find the stages of construction; refuse those without any material.
     void
@@ -446,21 +422,6 @@ namespace Viscoplastic
     inspect_contact_of_stages(
       const std::set<types::material_id>              &changing,
       const parallel::distributed::Triangulation<dim> &triangulation);
-
-    /// Set the data of the exact solution; refuse other data beside them.
-    void
-    derive_data();
-
-    /// Read N or eps_zz, of which at most one is given. Throws ExcMessage.
-    void
-    read_axial_datum();
-
-    /// Set the primary sides of contact between bodies. Throws ExcMessage.
-    void
-    find_contact_pairs();
-    void
-    inspect_contact_pairs(
-      const parallel::distributed::Triangulation<dim> &triangulation) const;
 
     struct Entry
     {

@@ -19,18 +19,6 @@ namespace Viscoplastic
 
 
 
-  std::string
-  MeshReader::quoted(const std::string &word)
-  {
-    std::string result = word.substr(0, 40);
-    for (char &c : result)
-      if (!std::isprint(static_cast<unsigned char>(c)))
-        c = '?';
-    return "'" + result + (word.size() > 40 ? "..." : "") + "'";
-  }
-
-
-
   MeshReader::MeshReader(std::string text, const unsigned int dim)
     : dim(dim)
     , text(std::move(text))

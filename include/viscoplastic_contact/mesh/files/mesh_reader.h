@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
+#include <viscoplastic_contact/base/messages.h>
 #include <viscoplastic_contact/mesh/files/mesh_file.h>
 
 #include <map>
@@ -92,7 +93,10 @@ namespace Viscoplastic
 
     /// Return a word of the file as a message can show it.
     static std::string
-    quoted(const std::string &word);
+    quoted(const std::string &word)
+    {
+      return "'" + excerpt(word, 40) + "'";
+    }
 
     // The mesh
 

@@ -275,22 +275,13 @@ namespace Viscoplastic
         }
     });
 
-    std::ostringstream description;
-    for (const auto &file : mine)
-      description << file.name << ' ' << file.size << ' ' << file.checksum
-                  << ' ';
-    const auto all = Utilities::MPI::gather(communicator, description.str());
+    const auto all = Utilities::MPI::gather(communicator, mine);
     do_together([&]() {
       if (rank != 0)
         return;
       manifest.files.clear();
-      for (const std::string &part : all)
-        {
-          std::istringstream       words(part);
-          CheckpointManifest::File file;
-          while (words >> file.name >> file.size >> file.checksum)
-            manifest.files.push_back(file);
-        }
+      for (const auto &part : all)
+        manifest.files.insert(manifest.files.end(), part.begin(), part.end());
       write_file(temporary + manifest_name, manifest.text());
       fs::remove(temporary + list_name);
       synchronize_directory(temporary);

@@ -25,6 +25,13 @@ namespace Viscoplastic
       std::string   name;
       std::uint64_t size     = 0;
       std::uint32_t checksum = 0;
+
+      template <typename Archive>
+      void
+      serialize(Archive &archive, const unsigned int)
+      {
+        archive &name &size &checksum;
+      }
     };
     std::vector<File> files;
 

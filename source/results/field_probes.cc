@@ -18,6 +18,23 @@ namespace Viscoplastic
         result[v] = GeometryInfo<dim>::d_linear_shape_function(unit, v);
       return result;
     }
+
+
+
+    /// The physical quantity of an integral over a boundary or a material.
+    Quantity
+    integrated(const Quantity quantity, const bool is_of_boundary)
+    {
+      if (quantity == Quantity::stress)
+        return is_of_boundary ? Quantity::force : Quantity::energy;
+      if (quantity == Quantity::work_per_area && is_of_boundary)
+        return Quantity::energy;
+      if (quantity == Quantity::length && is_of_boundary)
+        return Quantity::volume;
+      if (quantity == Quantity::pure_number)
+        return is_of_boundary ? Quantity::area : Quantity::volume;
+      return Quantity::pure_number; // without a label of its own
+    }
   } // namespace
 
 
@@ -129,9 +146,7 @@ namespace Viscoplastic
         const auto add = [&](const std::string &name,
                              const Quantity     quantity,
                              const bool         is_of_step = false) {
-          all_names.push_back(name);
-          quantities.push_back(quantity);
-          is_dissipation.push_back(is_of_step);
+          all_columns.push_back({name, quantity, is_of_step});
         };
         add((is_boundary ? "area_" : "volume_") + integral.name(),
             is_boundary ? Quantity::area : Quantity::volume);
@@ -257,7 +272,7 @@ namespace Viscoplastic
   FieldIntegrals<dim>::values(const State<dim> &old,
                               const State<dim> &state) const
   {
-    std::vector<double> result(all_names.size(), 0.);
+    std::vector<double> result(all_columns.size(), 0.);
     double             *sums = result.data();
     for (std::size_t i = 0; i < pieces.size(); ++i)
       {

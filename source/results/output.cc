@@ -144,8 +144,12 @@ namespace Viscoplastic
                          Data               data,
                          const bool         is_series)
   {
-    const std::set<unsigned int>   beyond_range = data.cut_off_infinite();
-    const std::vector<std::string> data_sets    = data.names;
+    const std::vector<std::string> data_sets = data.names;
+    std::set<unsigned int>         beyond_range;
+    data.for_each_value([&beyond_range](const unsigned int i, auto &value) {
+      if (cut_off(value))
+        beyond_range.insert(i);
+    });
 
     // Like DataOutInterface::write_vtu_with_pvtu_record(), whose errors do not
     // name the file.
@@ -170,7 +174,8 @@ namespace Viscoplastic
       if (rank != 0)
         return;
       std::ostringstream list;
-      data->write_pvtu_record(list, pieces);
+      DataOutBase::write_pvtu_record(
+        list, pieces, data->names, data->vectors, vtk_flags());
       replace_file(path + record + ".pvtu", list.str());
       if (const auto &[file, text] = of_series; !file.empty())
         replace_file(file, text);

@@ -83,7 +83,7 @@ namespace Viscoplastic
           quantities.integrals = integrals->values(old.state, step.end.state);
           dissipated.resize(quantities.integrals.size(), 0.);
           for (std::size_t i = 0; i < dissipated.size(); ++i)
-            if (integrals->is_of_step(i))
+            if (integrals->columns()[i].is_of_step)
               quantities.integrals[i] = dissipated[i] +=
                 quantities.integrals[i];
         }

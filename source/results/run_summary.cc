@@ -57,25 +57,11 @@ namespace Viscoplastic
 
 
 
-    /// Prints numbers with their units, if the scene declares any.
-    template <int dim>
-    struct WithUnits
+    std::string
+    with_unit_of_time(const double t, const Units &units)
     {
-      const Units &units;
-
-      std::string
-      time(const double t) const
-      {
-        return number(t) + units.suffix(Quantity::time, dim);
-      }
-
-      std::string
-      at_time(const Largest &largest, const Quantity quantity) const
-      {
-        return with_unit({largest.value}, units.name(quantity, dim)) +
-               " at t = " + time(largest.t);
-      }
-    };
+      return number(t) + units.suffix(Quantity::time);
+    }
 
 
 
@@ -87,7 +73,7 @@ namespace Viscoplastic
               const PlaceNames      &names,
               const RunSummary<dim> &run)
     {
-      out << "At t = " << WithUnits<dim>{units}.time(run.t) << ":\n";
+      out << "At t = " << with_unit_of_time(run.t, units) << ":\n";
       // Forces below this part of the largest are solver errors and print as 0.
       constexpr double noise         = 1e-5;
       double           largest_force = 0.;
@@ -122,12 +108,16 @@ namespace Viscoplastic
                   const Units           &units,
                   const RunSummary<dim> &run)
     {
-      const WithUnits<dim> with{units};
-      const auto           with_place = [&](const Largest    &largest,
+      const auto at_time = [&](const Largest &largest,
+                               const Quantity quantity) {
+        return with_unit({largest.value}, units.name(quantity, dim)) +
+               " at t = " + with_unit_of_time(largest.t, units);
+      };
+      const auto with_place = [&](const Largest    &largest,
                                   const Quantity    quantity,
                                   const Point<dim> &position) {
-        return with.at_time(largest, quantity) + ", x = (" +
-               as_text(position, 3) + ")" + units.suffix(Quantity::length, dim);
+        return at_time(largest, quantity) + ", x = (" + as_text(position, 3) +
+               ")" + units.suffix(Quantity::length, dim);
       };
       out << "Largest in the run:\n";
       print_row(out,
@@ -143,25 +133,23 @@ namespace Viscoplastic
       if (run.pressure.value > 0.)
         print_row(out,
                   "contact pressure",
-                  with.at_time(run.pressure, Quantity::stress));
+                  at_time(run.pressure, Quantity::stress));
       if (run.has_friction)
         print_row(out,
                   "slipping area",
                   number(run.slip_area.value) + " of " +
                     number(run.friction_area) +
                     units.suffix(Quantity::area, dim) +
-                    " at t = " + with.time(run.slip_area.t) +
+                    " at t = " + with_unit_of_time(run.slip_area.t, units) +
                     (run.slip_area.value > 0. && run.slip_area.t == 0. ?
                        ", into the initial equilibrium" :
                        ""));
       if (run.slip_rate.value > 0.)
-        print_row(out,
-                  "slip rate",
-                  with.at_time(run.slip_rate, Quantity::velocity));
+        print_row(out, "slip rate", at_time(run.slip_rate, Quantity::velocity));
       if (run.capped_volume.value > 0.)
         print_row(out,
                   "volume beyond the cap",
-                  with.at_time(run.capped_volume, Quantity::volume));
+                  at_time(run.capped_volume, Quantity::volume));
       if (run.stiffness.value > 0.)
         print_row(out,
                   "time step times r",
@@ -182,7 +170,7 @@ namespace Viscoplastic
       const auto print = [&](const std::string &what, const FirstStep &first) {
         if (first.n > 1)
           out << "First " << what << " between t = " << number(first.before)
-              << " and " << WithUnits<dim>{units}.time(first.t) << '\n';
+              << " and " << with_unit_of_time(first.t, units) << '\n';
       };
       print("touch", run.first_touch);
       print("slip", run.first_slip);
@@ -265,8 +253,7 @@ namespace Viscoplastic
                  const PlaceNames      &names,
                  const RunSummary<dim> &run)
     {
-      const WithUnits<dim> with{units};
-      const auto           error =
+      const auto error =
         [&](const std::string &name, const double value, const double norm) {
           if (norm > 0.)
             print_row(out,
@@ -284,12 +271,14 @@ namespace Viscoplastic
         return;
 
       out << "Estimated error in the energy norm, largest at t = "
-          << with.time(run.errors->t) << ", and relative to the solution:\n";
+          << with_unit_of_time(run.errors->t, units)
+          << ", and relative to the solution:\n";
       print_parts(out, run, *run.errors);
       if (!run.quantity.empty())
         {
           out << "Estimated error of " << names.quantity(run.quantity)
-              << ", largest at t = " << with.time(run.quantity_errors.t)
+              << ", largest at t = "
+              << with_unit_of_time(run.quantity_errors.t, units)
               << ", and relative to its largest value:\n";
           print_parts(out, run, run.quantity_errors);
         }
@@ -358,22 +347,18 @@ namespace Viscoplastic
                    found->second - (phase.name == "contact" ? friction() : 0.),
                    phase.text);
         if (phase.name == "contact" && plain_solves)
-          {
-            print_line("friction",
-                       friction(),
-                       *plain_solves > 0. ?
-                         "active set; with it, solves take " +
-                           number(solves / *plain_solves, 3) +
-                           " times as long" :
-                         "active set");
-          }
+          print_line("friction",
+                     friction(),
+                     *plain_solves > 0. ?
+                       "active set; with it, solves take " +
+                         number(solves / *plain_solves, 3) + " times as long" :
+                       "active set");
         remaining.erase(found);
       }
     // Phases that are not in the list, under their own names.
     for (const auto &[name, time] : remaining)
       print_line(name, time, "");
-    const double others = rest;
-    print_line("rest", others, "mesh, initial state, progress");
+    print_line("rest", double(rest), "mesh, initial state, progress");
     print_line("whole run",
                total,
                earlier > 0. ?

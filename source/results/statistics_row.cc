@@ -294,9 +294,9 @@ namespace Viscoplastic
                     quantity_of_field(names[c]));
       }
     for (std::size_t i = 0; i < quantities.integrals.size(); ++i)
-      row.add(integrals->names()[i],
+      row.add(integrals->columns()[i].name,
               quantities.integrals[i],
-              integrals->quantity(i));
+              integrals->columns()[i].quantity);
   }
 
 

@@ -38,22 +38,6 @@ namespace Viscoplastic
 
 
 
-  Quantity
-  integrated(const Quantity quantity, const bool is_of_boundary)
-  {
-    if (quantity == Quantity::stress)
-      return is_of_boundary ? Quantity::force : Quantity::energy;
-    if (quantity == Quantity::work_per_area && is_of_boundary)
-      return Quantity::energy;
-    if (quantity == Quantity::length && is_of_boundary)
-      return Quantity::volume;
-    if (quantity == Quantity::pure_number)
-      return is_of_boundary ? Quantity::area : Quantity::volume;
-    return Quantity::pure_number; // without a label of its own
-  }
-
-
-
   template <int dim>
   Quantity
   quantity_of_estimator(const Scene<dim> &scene)

@@ -87,13 +87,12 @@ namespace Viscoplastic
 
 
 
-  /// Patches with nodal data, in the form that DataOutInterface writes. They
-  /// contain copies of all data, so that a thread can write them while the run
+  /// Patches with nodal data, in the form that DataOutBase writes. They contain
+  /// copies of all data, so that a thread can write them while the run
   /// continues.
   template <int patch_dim, int dim>
-  class PatchOutput : public DataOutInterface<patch_dim, dim>
+  struct PatchOutput
   {
-  public:
     std::vector<DataOutBase::Patch<patch_dim, dim>> patches;
     std::vector<std::string>                        names;
     std::vector<VectorRange>                        vectors;
@@ -113,28 +112,25 @@ namespace Viscoplastic
       names.insert(names.end(), is_vector ? dim : 1, name);
     }
 
-    /// Cut off the values of all patches. Returns the indices of the affected
-    /// data sets, with the number of data sets standing for the coordinates.
-    virtual std::set<unsigned int>
-    cut_off_infinite()
+    /// Call act(index of the data set, value) for all values, with the number
+    /// of data sets standing for the coordinates.
+    template <typename Action>
+    void
+    for_each_value(const Action &act)
     {
-      std::set<unsigned int> result;
       for (auto &patch : patches)
         {
           for (unsigned int i = 0; i < names.size(); ++i)
             for (unsigned int j = 0; j < patch.data.n_cols(); ++j)
-              if (cut_off(patch.data(i, j)))
-                result.insert(i);
+              act(i, patch.data(i, j));
           for (Point<dim> &x : patch.vertices)
             for (unsigned int d = 0; d < dim; ++d)
-              if (cut_off(x[d]))
-                result.insert(names.size());
+              act(names.size(), x[d]);
         }
-      return result;
     }
 
     /// Return the n-th part of a VTU file; empty after the last one.
-    virtual std::string
+    std::string
     vtu_part(const unsigned int n)
     {
       std::ostringstream text;
@@ -153,25 +149,6 @@ namespace Viscoplastic
       patch.data.reinit(names.size(),
                         GeometryInfo<patch_dim>::vertices_per_cell);
       return patch;
-    }
-
-  protected:
-    const std::vector<DataOutBase::Patch<patch_dim, dim>> &
-    get_patches() const override
-    {
-      return patches;
-    }
-
-    std::vector<std::string>
-    get_dataset_names() const override
-    {
-      return names;
-    }
-
-    std::vector<VectorRange>
-    get_nonscalar_data_ranges() const override
-    {
-      return vectors;
     }
   };
 
@@ -210,36 +187,32 @@ namespace Viscoplastic
           }
     }
 
-    std::set<unsigned int>
-    cut_off_infinite() override
+    template <typename Action>
+    void
+    for_each_value(const Action &act)
     {
-      std::set<unsigned int> result;
-      unsigned int           row = 0;
+      unsigned int row = 0;
       for (auto &values : nodal)
         {
           for (std::size_t i = 0; i < values.size(); ++i)
-            if (cut_off(values[i]))
-              result.insert(row + i % dim);
+            act(row + i % dim, values[i]);
           row += dim;
         }
       for (auto &values : means)
         {
           for (float &value : values)
-            if (cut_off(value))
-              result.insert(row);
+            act(row, value);
           ++row;
         }
       for (Point<dim> &x : vertices)
         for (unsigned int d = 0; d < dim; ++d)
-          if (cut_off(x[d]))
-            result.insert(row);
-      return result;
+          act(row, x[d]);
     }
 
     /// Part 0 has the mesh, the next ones have a field each, and the last one
     /// has the end, in the format of deal.II.
     std::string
-    vtu_part(const unsigned int n) override
+    vtu_part(const unsigned int n)
     {
       const std::size_t n_cells = nodes.size() / n_vertices;
       if (n_cells == 0)

@@ -34,8 +34,6 @@ namespace Viscoplastic
                const std::set<RecordedField> &fields);
 
     BodyFields(const BodyFields &) = delete;
-    BodyFields &
-    operator=(const BodyFields &) = delete;
 
     /// The fields in the output of a scene, except for nodal ones.
     static std::set<RecordedField>

@@ -77,32 +77,25 @@ namespace Viscoplastic
     /// Keeps a reference to @p discretization. Collective.
     explicit FieldIntegrals(const Discretization<dim> &discretization);
 
-    /// The names of the values: area_boundary_3,
-    /// integral_boundary_3_displacement_x, ...
-    const std::vector<std::string> &
-    names() const
+    /// A value: area_boundary_3, integral_boundary_3_displacement_x, ...
+    struct Column
     {
-      return all_names;
+      std::string name;
+      Quantity    quantity;
+      /// Whether it belongs to a step and is to be summed over steps.
+      bool is_of_step;
+    };
+
+    const std::vector<Column> &
+    columns() const
+    {
+      return all_columns;
     }
 
     /// The values after a step from @p old, which may be @p state, on all
     /// ranks. Dissipation is that of this step alone. Collective.
     std::vector<double>
     values(const State<dim> &old, const State<dim> &state) const;
-
-    /// The physical quantity of a value.
-    Quantity
-    quantity(const std::size_t value) const
-    {
-      return quantities[value];
-    }
-
-    /// Whether a value belongs to a step and is to be summed over steps.
-    bool
-    is_of_step(const std::size_t value) const
-    {
-      return is_dissipation[value];
-    }
 
   private:
     /// An owned cell, or one of its faces, with the integrals of the shape
@@ -127,9 +120,7 @@ namespace Viscoplastic
 
 
     const Discretization<dim>      &discretization;
-    std::vector<std::string>        all_names;
-    std::vector<Quantity>           quantities; // of the names
-    std::vector<bool>               is_dissipation;
+    std::vector<Column>             all_columns;
     std::vector<std::vector<Piece>> pieces; // by integral
     /// For strains at quadrature points; null unless energies are requested.
     std::unique_ptr<const StressSpace<dim>> points;

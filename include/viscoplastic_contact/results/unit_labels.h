@@ -13,10 +13,6 @@ namespace Viscoplastic
   Quantity
   quantity_of_field(const std::string &name);
 
-  /// The physical quantity of an integral over a boundary or a material.
-  Quantity
-  integrated(const Quantity quantity, const bool is_of_boundary);
-
   /// The quantity of cell-wise estimates: roots of energies or, for a quantity
   /// of interest, of any unit.
   template <int dim>

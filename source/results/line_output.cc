@@ -29,48 +29,29 @@ namespace Viscoplastic
 
   template <int dim>
   void
-  LineOutput<dim>::name_files(const std::string &directory)
+  LineOutput<dim>::open(const std::string                 &directory,
+                        const std::optional<unsigned int> &last_step)
   {
+    const MPI_Comm communicator = discretization->space.communicator;
     names.clear();
     files.clear();
-    if (Utilities::MPI::this_mpi_process(discretization->space.communicator) ==
-        0)
+    if (Utilities::MPI::this_mpi_process(communicator) == 0)
       for (std::size_t i = 0; i < scene.output_lines.size(); ++i)
         names.push_back(directory + line_file_name(i));
-  }
-
-
-
-  template <int dim>
-  void
-  LineOutput<dim>::begin(const std::string &directory)
-  {
-    name_files(directory);
-    fail_together(discretization->space.communicator, [this] {
-      for (const std::string &name : names)
-        {
-          require_writable_file(name);
-          files.emplace_back(name);
-          if (!files.back())
-            refuse("The file '" + name + "' cannot be written.");
-        }
-    });
-  }
-
-
-
-  template <int dim>
-  void
-  LineOutput<dim>::resume(const std::string &directory,
-                          const unsigned int last_step)
-  {
-    name_files(directory);
-    fail_together(discretization->space.communicator, [&] {
+    fail_together(communicator, [&] {
       std::vector<TableBeginning> beginnings;
       for (const std::string &name : names)
-        beginnings.push_back(beginning_of_table(name, last_step));
+        if (last_step)
+          beginnings.push_back(beginning_of_table(name, *last_step));
+        else
+          require_writable_file(name);
       for (std::size_t i = 0; i < names.size(); ++i)
-        files.push_back(append_to_table(names[i], beginnings[i]));
+        {
+          files.push_back(last_step ? append_to_table(names[i], beginnings[i]) :
+                                      std::ofstream(names[i]));
+          if (!files.back())
+            refuse("The file '" + names[i] + "' cannot be written.");
+        }
     });
   }
 

@@ -28,7 +28,6 @@ namespace Viscoplastic
       write_record<dim>(scene,
                         path,
                         Utilities::MPI::n_mpi_processes(communicator),
-                        nullptr,
                         nullptr);
     });
   }
@@ -37,9 +36,7 @@ namespace Viscoplastic
 
   template <int dim>
   void
-  Output<dim>::record_end(const RunSummary<dim>          &summary,
-                          const RunCosts                 &costs,
-                          const std::vector<std::string> &remarks) const
+  Output<dim>::record_end(const RunEnd<dim> &end) const
   {
     fail_together(communicator, [&]() {
       if (Utilities::MPI::this_mpi_process(communicator) != 0)
@@ -47,9 +44,7 @@ namespace Viscoplastic
       write_record(scene,
                    path,
                    Utilities::MPI::n_mpi_processes(communicator),
-                   &summary,
-                   &costs,
-                   remarks);
+                   &end);
       remove_files_of_earlier_run();
     });
   }

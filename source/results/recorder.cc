@@ -124,6 +124,29 @@ namespace Viscoplastic
 
   template <int dim>
   void
+  Recorder<dim>::record_initial_state(TimeStepper<dim>     &time_stepper,
+                                      const SolutionErrors &errors,
+                                      EvaluatedState<dim>  &accepted)
+  {
+    AcceptedStep<dim> initial;
+    initial.time_step = {0, 0., 0., 0.};
+    initial.report    = accepted.report;
+    // Only the record has the estimate of the quantity in the initial state.
+    // The state is moved, since a copy has all fields.
+    const ErrorEstimate estimate       = accepted.errors;
+    const SpaceEstimate space_estimate = accepted.space_estimate;
+    initial.end                        = std::move(accepted);
+    time_stepper.estimate_quantity(initial.end);
+    record(initial.end, initial, errors);
+    accepted                = std::move(initial.end);
+    accepted.errors         = estimate;
+    accepted.space_estimate = space_estimate;
+  }
+
+
+
+  template <int dim>
+  void
   Recorder<dim>::sum_up(const AcceptedStep<dim>   &step,
                         const StepQuantities<dim> &quantities,
                         const SolutionErrors      &errors)
@@ -321,7 +344,9 @@ namespace Viscoplastic
   Recorder<dim>::bill() const
   {
     RunBill bill;
-    bill.seconds       = seconds();
+    bill.seconds = timer.get_summary_data(TimerOutput::total_wall_time);
+    if (pilot_seconds > 0.)
+      bill.seconds["pilot run"] += pilot_seconds;
     bill.total         = elapsed();
     bill.earlier       = earlier_seconds;
     bill.has_viscosity = scene.has_viscosity();

@@ -36,16 +36,17 @@ namespace Viscoplastic
 
 
 
+    template <int dim>
     nlohmann::ordered_json
-    record_of_costs(const RunCosts &costs)
+    record_of_costs(const RunEnd<dim> &end)
     {
-      const SolverDemand  &demand   = costs.solver_demand;
+      const SolverDemand  &demand   = end.solver_demand;
       const BulkSolverKind solver   = choose_bulk_solver(demand);
       const SolverCost     expected = expected_cost(solver, demand);
-      return {{"seconds", costs.seconds},
-              {"friction_seconds", costs.friction},
-              {"memory_before_MB", costs.first_memory},
-              {"peak_memory_MB", costs.peak_memory},
+      return {{"seconds", end.bill.seconds},
+              {"friction_seconds", end.bill.friction()},
+              {"memory_before_MB", end.first_memory},
+              {"peak_memory_MB", end.peak_memory},
               {"solver", to_string(solver)},
               {"solver_demand",
                {{"choice", name_of(demand.choice)},
@@ -141,12 +142,10 @@ namespace Viscoplastic
 
   template <int dim>
   void
-  write_record(const Scene<dim>               &scene,
-               const std::string              &path,
-               const unsigned int              n_ranks,
-               const RunSummary<dim>          *summary,
-               const RunCosts                 *costs,
-               const std::vector<std::string> &remarks)
+  write_record(const Scene<dim>  &scene,
+               const std::string &path,
+               const unsigned int n_ranks,
+               const RunEnd<dim> *end)
   {
     std::ostringstream parameters;
     scene.parameters.print(parameters);
@@ -182,24 +181,27 @@ namespace Viscoplastic
       record["tables"].push_back({{"section", table->section},
                                   {"file", table->file},
                                   {"crc32", table->checksum}});
-    if (summary != nullptr && summary->errors)
-      record["estimated_error"] =
-        record_of_errors(*summary->errors, "largest_energy_norm");
-    if (summary != nullptr && !summary->quantity.empty())
+    if (end != nullptr)
       {
-        auto &errors = record["estimated_error_of_quantity"] =
-          record_of_errors(summary->quantity_errors, "largest_value");
-        errors["quantity"] = summary->quantity;
+        const RunSummary<dim> &summary = end->summary;
+        if (summary.errors)
+          record["estimated_error"] =
+            record_of_errors(*summary.errors, "largest_energy_norm");
+        if (!summary.quantity.empty())
+          {
+            auto &errors = record["estimated_error_of_quantity"] =
+              record_of_errors(summary.quantity_errors, "largest_value");
+            errors["quantity"] = summary.quantity;
+          }
+        if (summary.jump_position)
+          for (unsigned int d = 0; d < dim; ++d)
+            record["prescribed_jump"].push_back((*summary.jump_position)[d]);
+        if (!summary.doubtful_steps.empty())
+          record["doubtful_steps"] = summary.doubtful_steps;
+        if (!end->remarks.empty())
+          record["remarks"] = end->remarks;
+        record["costs"] = record_of_costs(*end);
       }
-    if (summary != nullptr && summary->jump_position)
-      for (unsigned int d = 0; d < dim; ++d)
-        record["prescribed_jump"].push_back((*summary->jump_position)[d]);
-    if (summary != nullptr && !summary->doubtful_steps.empty())
-      record["doubtful_steps"] = summary->doubtful_steps;
-    if (!remarks.empty())
-      record["remarks"] = remarks;
-    if (costs != nullptr)
-      record["costs"] = record_of_costs(*costs);
     record["processor"] = processor();
     record["date"]      = date;
     replace_file(path + "run.json", json_text(record));

@@ -86,22 +86,43 @@ namespace Viscoplastic
 
   template <int dim>
   void
+  Announcer<dim>::announce_refinement(const unsigned int             n,
+                                      const double                   excess,
+                                      const types::global_cell_index n_cells)
+  {
+    console.stream() << "  mesh "
+                     << (excess >= 1.005 ? number(excess, 3) + " times " : "")
+                     << "too coarse for step " << n << ", refined to "
+                     << n_cells << " cells" << std::endl;
+  }
+
+
+
+  template <int dim>
+  void
   Announcer<dim>::announce(const Discretization<dim> &discretization)
   {
-    const DoFHandler<dim> &dof_handler = discretization.space.dof_handler;
-    std::ostream          &out         = console.stream();
-    out << "Mesh: " << dof_handler.get_triangulation().n_global_active_cells()
-        << " cells, " << dof_handler.n_dofs() << " degrees of freedom";
-    if (discretization.face)
-      for (const auto &[of_obstacles, name] :
-           {std::make_pair(false, " friction points"),
-            std::make_pair(true, " points of unilateral contact")})
-        if (const auto n = discretization.face->n_global_points(of_obstacles);
-            n > 0 || (!of_obstacles && discretization.scene().has_friction()))
-          out << ", " << n << name;
-    out << (discretization.mean_dilatation ? ", mean dilatation\n" : "\n");
-    warn_of_jumps(discretization.space);
-    advise_on_ranks(discretization);
+    if (!std::exchange(has_announced_mesh, true))
+      {
+        const DoFHandler<dim> &dof_handler = discretization.space.dof_handler;
+        std::ostream          &out         = console.stream();
+        out << "Mesh: "
+            << dof_handler.get_triangulation().n_global_active_cells()
+            << " cells, " << dof_handler.n_dofs() << " degrees of freedom";
+        if (discretization.face)
+          for (const auto &[of_obstacles, name] :
+               {std::make_pair(false, " friction points"),
+                std::make_pair(true, " points of unilateral contact")})
+            if (const auto n =
+                  discretization.face->n_global_points(of_obstacles);
+                n > 0 ||
+                (!of_obstacles && discretization.scene().has_friction()))
+              out << ", " << n << name;
+        out << (discretization.mean_dilatation ? ", mean dilatation\n" : "\n");
+        warn_of_jumps(discretization.space);
+        advise_on_ranks(discretization);
+      }
+    warn_of_held_faces(discretization);
   }
 
 

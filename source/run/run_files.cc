@@ -127,7 +127,7 @@ namespace Viscoplastic
     output.emplace(run.scene, communicator);
     if (run.pass.follows_another)
       output->resume({});
-    lines.begin(directory());
+    lines.open(directory());
     begin_checkpoints();
     if (Utilities::MPI::this_mpi_process(communicator) == 0)
       run.recorder.write_to(std::make_unique<Statistics>(
@@ -149,7 +149,7 @@ namespace Viscoplastic
     });
     output.emplace(run.scene, communicator);
     output->resume(archive.output_times);
-    lines.resume(directory(), n);
+    lines.open(directory(), n);
     // A run without regular checkpoints keeps the existing ones.
     const unsigned int n_kept = schedule.is_regular() ?
                                   parameters.checkpoint.keep :
@@ -268,16 +268,24 @@ namespace Viscoplastic
 
   template <int dim>
   void
-  RunFiles<dim>::close(const std::vector<std::string> &remarks)
+  RunFiles<dim>::close()
   {
     const Recorder<dim> &recorder = run.recorder;
-    output->record_end(recorder.summary(),
-                       {recorder.seconds(),
-                        recorder.bill().friction(),
+    std::ostream        &out      = console.stream();
+    recorder.check_sizes(/* at_end = */ true);
+    std::vector<std::string> remarks = console.remarks();
+    for (const std::string &remark : recorder.remarks(run.accepted.state))
+      remarks.push_back(remark);
+    recorder.print(out);
+    output->record_end({recorder.summary(),
+                        recorder.bill(),
                         first_memory,
                         memory_of_ranks(communicator).second,
-                        discretization->solver_demand()},
-                       remarks);
+                        discretization->solver_demand(),
+                        remarks});
+    for (const std::string &remark : remarks)
+      out << remark << '\n';
+    out << "Results in " << directory() << std::endl;
   }
 
 

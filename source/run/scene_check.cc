@@ -337,7 +337,6 @@ namespace Viscoplastic
     distribute_nodes(fe, dof_handler);
     const Discretization<dim> d(dof_handler, scene);
     announcer.announce(d);
-    announcer.warn_of_held_faces(d);
     // This throws if output points, lines or integrals are wrong.
     Recorder<dim>(scene, control, console, timer, budget.get()).set_mesh(d);
     for (const std::string &doubt : implausible_data(d, out))

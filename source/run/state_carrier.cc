@@ -1,41 +1,27 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <viscoplastic_contact/discretization/initial_state.h>
 #include <viscoplastic_contact/error/memory_loss.h>
+#include <viscoplastic_contact/error/state_transfer.h>
 #include <viscoplastic_contact/results/step_quantities.h>
 #include <viscoplastic_contact/run/state_carrier.h>
 
 namespace Viscoplastic
 {
-  template <int dim>
-  StateCarrier<dim>::StateCarrier(const ErrorEstimator<dim> *error_estimator,
-                                  const Discretization<dim> &discretization,
-                                  const EvaluatedState<dim> &accepted)
-    : energies(energies_on_mesh(discretization, accepted))
-    , error_estimator(error_estimator)
-  {
-    if (discretization.face)
-      density = discretization.face->density(accepted.state.contact);
-  }
-
-
-
-  template <int dim>
-  void
-  StateCarrier<dim>::complete(const Discretization<dim> &discretization,
-                              const double               loss,
-                              const double               history,
-                              EvaluatedState<dim>       &accepted) const
-  {
-    accepted.rate.reset();
-    if (error_estimator != nullptr)
-      error_estimator->change_mesh(
-        discretization.space, discretization.matrix, loss, history, accepted);
-  }
-
-
-
   namespace
   {
+    /// The density of the contact multipliers at nodes; empty without contact
+    /// points.
+    template <int dim>
+    DistributedVector
+    contact_density(const Discretization<dim> &discretization,
+                    const State<dim>          &state)
+    {
+      return discretization.face ? discretization.face->density(state.contact) :
+                                   DistributedVector();
+    }
+
+
+
     /// Return the state with the thermal stress removed from z, since any mesh
     /// can evaluate that anew; nothing if there is none. Collective.
     template <int dim>
@@ -48,106 +34,27 @@ namespace Viscoplastic
       laws.thermal->add_stress(state.t, -1., result->z);
       return result;
     }
-  } // namespace
 
 
 
-  template <int dim>
-  MeshChange<dim>::MeshChange(
-    const ErrorEstimator<dim>                 *error_estimator,
-    const Discretization<dim>                 &discretization,
-    const EvaluatedState<dim>                 &accepted,
-    parallel::distributed::Triangulation<dim> &triangulation)
-    : StateCarrier<dim>(error_estimator, discretization, accepted)
-    , without_temperature(
-        without_thermal_stress(discretization.laws, accepted.state))
-    , carried(without_temperature ? *without_temperature : accepted.state)
-    , loss(
-        error_estimator != nullptr ?
-          memory_loss(triangulation, discretization.stress_space, carried.z) :
-          0.)
-    , transfer(triangulation,
-               discretization.stress_space,
-               carried,
-               discretization.face ? &this->density : nullptr)
-  {}
+    /// Reset the rate and update the errors of a transferred state. @p loss and
+    /// @p history: see ErrorEstimator::change_mesh().
+    template <int dim>
+    void
+    complete(const ErrorEstimator<dim> *error_estimator,
+             const Discretization<dim> &discretization,
+             const double               loss,
+             const double               history,
+             EvaluatedState<dim>       &accepted)
+    {
+      accepted.rate.reset();
+      if (error_estimator != nullptr)
+        error_estimator->change_mesh(
+          discretization.space, discretization.matrix, loss, history, accepted);
+    }
 
 
 
-  template <int dim>
-  void
-  MeshChange<dim>::carry(const Discretization<dim> &discretization,
-                         TimeStepper<dim>          &time_stepper,
-                         EvaluatedState<dim>       &accepted)
-  {
-    const Scene<dim> &scene  = discretization.scene();
-    State<dim>       &state  = accepted.state;
-    auto              result = transfer.unpack(discretization.stress_space);
-    state                    = std::move(result.state);
-    if (without_temperature)
-      for (IrreversibleStress *stress : {&state.z, &result.stress})
-        discretization.laws.thermal->add_stress(state.t, 1., *stress);
-    if (discretization.face)
-      state.contact =
-        contact_on_new_mesh(discretization, state, result.multiplier_density);
-    const bool keeps_displacement =
-      scene.parameters.initial_state.reset_displacement &&
-      state.initial_u.size() > 0;
-    if (keeps_displacement)
-      state.initial_u -= state.u;
-    // The interpolated u does not fit the history with its new slopes. Each
-    // round adds a share of the mismatch of E eps(u) + z = sigma to z, and
-    // equilibrium, which keeps the volume, moves u again. Strains of a finer
-    // mesh recur in each round, so that rounds end once little else is left.
-    bool is_settled = !scene.has_viscosity() || scene.keeps_history_at_points();
-    if (is_settled)
-      time_stepper.settle(accepted);
-    constexpr unsigned int max_rounds = 8;
-    const double           error      = this->error_estimator != nullptr ?
-                                          accepted.errors.space :
-                                          std::numeric_limits<double>::infinity();
-    for (unsigned int round = 0; scene.has_viscosity() && round < max_rounds;
-         ++round)
-      {
-        if (!share_mismatch(discretization.stress_space,
-                            result.stress,
-                            scene.parameters.error_control.algebraic_fraction,
-                            error,
-                            state) &&
-            is_settled)
-          break;
-        time_stepper.settle(accepted);
-        is_settled = true;
-      }
-    // What restoring equilibrium changes is part of the initial displacement.
-    if (keeps_displacement)
-      state.initial_u += state.u;
-    this->complete(discretization, loss, result.of_refined_cells, accepted);
-  }
-
-
-
-  template <int dim>
-  StageChange<dim>::StageChange(const ErrorEstimator<dim> *error_estimator,
-                                const Discretization<dim> &discretization,
-                                const EvaluatedState<dim> &accepted)
-    : StateCarrier<dim>(error_estimator, discretization, accepted)
-  {
-    for (const auto &cell : discretization.space.cells)
-      was_present.push_back(
-        discretization.scene().is_present(cell->material_id()));
-    // Ghost cells are included, since they share nodes with owned ones.
-    for (const auto &cell :
-         discretization.space.dof_handler.active_cell_iterators())
-      if (!cell->is_artificial() &&
-          !discretization.scene().is_present(cell->material_id()))
-        were_absent.insert(cell->material_id());
-  }
-
-
-
-  namespace
-  {
     /// Let new points without a gap begin in contact; the active set opens them
     /// if their force is tensile.
     template <int dim>
@@ -178,12 +85,109 @@ namespace Viscoplastic
 
 
   template <int dim>
-  void
-  StageChange<dim>::carry(const Discretization<dim> &discretization,
-                          TimeStepper<dim>          &time_stepper,
-                          EvaluatedState<dim>       &accepted)
+  EnergyChange
+  carry_to_marked_mesh(
+    const ErrorEstimator<dim>                  *error_estimator,
+    const std::unique_ptr<Discretization<dim>> &discretization,
+    const std::unique_ptr<TimeStepper<dim>>    &time_stepper,
+    parallel::distributed::Triangulation<dim>  &triangulation,
+    const std::function<void()>                &set_up,
+    EvaluatedState<dim>                        &accepted)
   {
-    const AdmissibleSpace<dim> &space = discretization.space;
+    const EnergiesOnMesh energies = energies_on_mesh(*discretization, accepted);
+    const DistributedVector density =
+      contact_density(*discretization, accepted.state);
+    const std::optional<State<dim>> without_temperature =
+      without_thermal_stress(discretization->laws, accepted.state);
+    const State<dim> &carried =
+      without_temperature ? *without_temperature : accepted.state;
+    const double loss =
+      error_estimator != nullptr ?
+        memory_loss(triangulation, discretization->stress_space, carried.z) :
+        0.;
+    StateTransfer<dim> transfer(triangulation,
+                                discretization->stress_space,
+                                carried,
+                                discretization->face ? &density : nullptr);
+    triangulation.execute_coarsening_and_refinement();
+    set_up();
+
+    const Scene<dim> &scene  = discretization->scene();
+    State<dim>       &state  = accepted.state;
+    auto              result = transfer.unpack(discretization->stress_space);
+    state                    = std::move(result.state);
+    if (without_temperature)
+      for (IrreversibleStress *stress : {&state.z, &result.stress})
+        discretization->laws.thermal->add_stress(state.t, 1., *stress);
+    if (discretization->face)
+      state.contact =
+        contact_on_new_mesh(*discretization, state, result.multiplier_density);
+    const bool keeps_displacement =
+      scene.parameters.initial_state.reset_displacement &&
+      state.initial_u.size() > 0;
+    if (keeps_displacement)
+      state.initial_u -= state.u;
+    // The interpolated u does not fit the history with its new slopes. Each
+    // round adds a share of the mismatch of E eps(u) + z = sigma to z, and
+    // equilibrium, which keeps the volume, moves u again. Strains of a finer
+    // mesh recur in each round, so that rounds end once little else is left.
+    bool is_settled = !scene.has_viscosity() || scene.keeps_history_at_points();
+    if (is_settled)
+      time_stepper->settle(accepted);
+    constexpr unsigned int max_rounds = 8;
+    const double           error      = error_estimator != nullptr ?
+                                          accepted.errors.space :
+                                          std::numeric_limits<double>::infinity();
+    for (unsigned int round = 0; scene.has_viscosity() && round < max_rounds;
+         ++round)
+      {
+        if (!share_mismatch(discretization->stress_space,
+                            result.stress,
+                            scene.parameters.error_control.algebraic_fraction,
+                            error,
+                            state) &&
+            is_settled)
+          break;
+        time_stepper->settle(accepted);
+        is_settled = true;
+      }
+    // What restoring equilibrium changes is part of the initial displacement.
+    if (keeps_displacement)
+      state.initial_u += state.u;
+    complete(error_estimator,
+             *discretization,
+             loss,
+             result.of_refined_cells,
+             accepted);
+    return {energies, energies_on_mesh(*discretization, accepted)};
+  }
+
+
+
+  template <int dim>
+  EnergyChange
+  carry_to_stage(const ErrorEstimator<dim>                  *error_estimator,
+                 const std::unique_ptr<Discretization<dim>> &discretization,
+                 const std::unique_ptr<TimeStepper<dim>>    &time_stepper,
+                 const std::function<void()>                &set_up,
+                 EvaluatedState<dim>                        &accepted)
+  {
+    const Scene<dim> &scene    = discretization->scene();
+    EnergiesOnMesh    energies = energies_on_mesh(*discretization, accepted);
+    DistributedVector density =
+      contact_density(*discretization, accepted.state);
+    std::vector<bool>            was_present; // by cell
+    std::set<types::material_id> were_absent;
+    for (const auto &cell : discretization->space.cells)
+      was_present.push_back(scene.is_present(cell->material_id()));
+    // Ghost cells are included, since they share nodes with owned ones.
+    for (const auto &cell :
+         discretization->space.dof_handler.active_cell_iterators())
+      if (!cell->is_artificial() && !scene.is_present(cell->material_id()))
+        were_absent.insert(cell->material_id());
+    set_up();
+
+    const AdmissibleSpace<dim> &space = discretization->space;
     State<dim>                 &state = accepted.state;
     // The dofs coupled to a node on the primary side, thus ghosts, depend on
     // the stage.
@@ -192,7 +196,7 @@ namespace Viscoplastic
                                            &state.initial_u,
                                            &state.friction_work,
                                            &state.carried_error_of_u,
-                                           &this->density})
+                                           &density})
       if (field->size() > 0)
         {
           DistributedVector owned = space.owned_vector();
@@ -203,25 +207,23 @@ namespace Viscoplastic
         }
     DistributedVector old_u = space.owned_vector();
     space.to_frames(state.u, old_u);
-    if (discretization.scene().has_unilateral_contact() ||
-        (discretization.face &&
-         discretization.scene().contact_changes_with_stages()))
+    if (scene.has_unilateral_contact() ||
+        (discretization->face && scene.contact_changes_with_stages()))
       {
-        state.contact =
-          contact_on_new_mesh(discretization, state, this->density);
-        hold_new_points(discretization, were_absent, state.contact);
+        state.contact = contact_on_new_mesh(*discretization, state, density);
+        hold_new_points(*discretization, were_absent, state.contact);
       }
-    enter_stage(discretization.stress_space, was_present, state);
-    time_stepper.settle(accepted);
-    this->complete(discretization, 0., 0., accepted);
-    time_stepper.estimate(accepted);
+    enter_stage(discretization->stress_space, was_present, state);
+    time_stepper->settle(accepted);
+    complete(error_estimator, *discretization, 0., 0., accepted);
+    time_stepper->estimate(accepted);
     // Only loads that remain do work; those on removed parts do not.
-    this->energies.of_loads = old_u * accepted.forces.load.values;
+    energies.of_loads = old_u * accepted.forces.load.values;
+    return {energies, energies_on_mesh(*discretization, accepted)};
   }
 
 
 
-  VISCOPLASTIC_INSTANTIATE_CLASS(StateCarrier);
-  VISCOPLASTIC_INSTANTIATE_CLASS(MeshChange);
-  VISCOPLASTIC_INSTANTIATE_CLASS(StageChange);
+  VISCOPLASTIC_INSTANTIATE(carry_to_marked_mesh);
+  VISCOPLASTIC_INSTANTIATE(carry_to_stage);
 } // namespace Viscoplastic

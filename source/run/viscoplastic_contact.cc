@@ -1,24 +1,19 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <deal.II/fe/fe_q.h>
 
-#include <viscoplastic_contact/base/messages.h>
-#include <viscoplastic_contact/discretization/initial_state.h>
 #include <viscoplastic_contact/mesh/mesh_refinement.h>
 #include <viscoplastic_contact/run/scene_check.h>
 #include <viscoplastic_contact/run/state_carrier.h>
 #include <viscoplastic_contact/run/viscoplastic_contact.h>
 
-
 namespace Viscoplastic
 {
   template <int dim>
-  ViscoplasticContact<dim>::ViscoplasticContact(const Parameters    &parameters,
-                                                Console             &console,
-                                                const PilotRun<dim> &pilot_run)
-    : communicator(MPI_COMM_WORLD)
-    , parameters(parameters)
-    , scene(parameters)
-    , triangulation(communicator)
+  ViscoplasticContact<dim>::ViscoplasticContact(const Parameters &parameters,
+                                                Console          &console,
+                                                const PilotRun   &pilot_run)
+    : scene(parameters)
+    , triangulation(MPI_COMM_WORLD)
     , fe(FE_Q<dim>(1), dim)
     , dof_handler(triangulation)
     , pilot_run(pilot_run)
@@ -29,9 +24,8 @@ namespace Viscoplastic
                         std::make_unique<ErrorEstimator<dim>>(scene) :
                         nullptr)
     , console(console)
-    , out(console.stream())
     , announcer(console)
-    , timer(out, TimerOutput::never, TimerOutput::wall_times)
+    , timer(console.stream(), TimerOutput::never, TimerOutput::wall_times)
     , known_solution(scene, timer)
     , recorder(scene, control, console, timer, budget.get())
     , run_state{scene, accepted, control, budget.get(), pass, recorder}
@@ -43,7 +37,7 @@ namespace Viscoplastic
   std::string
   ViscoplasticContact<dim>::run(const CommandLine::Restart restart)
   {
-    files.emplace(run_state, console, timer, communicator);
+    files.emplace(run_state, console, timer, triangulation.get_communicator());
     if (!pass.follows_another)
       make_first_mesh(scene, triangulation, control, &announcer);
     known_solution.check();
@@ -52,19 +46,26 @@ namespace Viscoplastic
         resume(*checkpoint);
         if (is_finished() && !needs_another_pass())
           {
-            out << "This is the last step: there is nothing left to do."
-                << std::endl;
+            console.stream()
+              << "This is the last step: there is nothing left to do.\n";
             return "";
           }
       }
     else
-      begin();
-
+      {
+        begin();
+        files->begin();
+        // If the first step refines its mesh, the initial state is made anew.
+        if (mesh_controller.repeats_steps())
+          recorder.stop_clock();
+        else
+          record_initial_state();
+      }
     files->begin_steps();
     const std::string interruption = make_steps();
     files->finish();
     if (interruption.empty() && !needs_another_pass())
-      close();
+      files->close();
     return interruption;
   }
 
@@ -117,7 +118,7 @@ namespace Viscoplastic
   ViscoplasticContact<dim>::run_without_files()
   {
     make_first_mesh<dim>(scene, triangulation, control, nullptr);
-    begin_state();
+    begin();
     make_steps();
     recorder.check_sizes(/* at_end = */ true);
     return recorder.summary();
@@ -129,11 +130,10 @@ namespace Viscoplastic
   bool
   ViscoplasticContact<dim>::needs_another_pass() const
   {
-    if (!budget || !scene.quantity || !pass.has_changed_mesh)
-      return false;
-    return (QuantityEstimator<dim>::is_of_creep(scene) &&
-            !scene.quantity->is_sum()) ||
-           (is_finished() && !pass.follows_another);
+    return budget && scene.quantity && pass.has_changed_mesh &&
+           ((QuantityEstimator<dim>::is_of_creep(scene) &&
+             !scene.quantity->is_sum()) ||
+            (is_finished() && !pass.follows_another));
   }
 
 
@@ -154,7 +154,7 @@ namespace Viscoplastic
 
   template <int dim>
   void
-  ViscoplasticContact<dim>::begin_state()
+  ViscoplasticContact<dim>::begin()
   {
     std::string remark;
     if (budget)
@@ -180,21 +180,6 @@ namespace Viscoplastic
 
 
   template <int dim>
-  void
-  ViscoplasticContact<dim>::begin()
-  {
-    begin_state();
-    files->begin();
-    // If the first step refines its mesh, the initial state is made anew.
-    if (mesh_controller.repeats_steps())
-      recorder.stop_clock();
-    else
-      record_initial_state();
-  }
-
-
-
-  template <int dim>
   AcceptedStep<dim>
   ViscoplasticContact<dim>::next_step()
   {
@@ -215,27 +200,15 @@ namespace Viscoplastic
   void
   ViscoplasticContact<dim>::record_initial_state()
   {
-    if (accepted.state.n > 0 || has_recorded_initial_state)
+    if (accepted.state.n > 0 || recorder.has_begun())
       return;
-    has_recorded_initial_state = true;
-    AcceptedStep<dim> initial;
-    initial.time_step = {0, 0., 0., 0.};
-    initial.report    = accepted.report;
     // Write first: expected times of steps are measured from the record on.
     if (files)
-      files->write(initial.time_step);
-    // Only the record has the estimate of the quantity in the initial state.
-    // The state is moved, since a copy has all fields.
-    const ErrorEstimate errors         = accepted.errors;
-    const SpaceEstimate space_estimate = accepted.space_estimate;
-    initial.end                        = std::move(accepted);
-    time_stepper->estimate_quantity(initial.end);
-    recorder.record(initial.end,
-                    initial,
-                    known_solution.errors(*discretization, initial.end.state));
-    accepted                = std::move(initial.end);
-    accepted.errors         = errors;
-    accepted.space_estimate = space_estimate;
+      files->write({0, 0., 0., 0.});
+    recorder.record_initial_state(*time_stepper,
+                                  known_solution.errors(*discretization,
+                                                        accepted.state),
+                                  accepted);
   }
 
 
@@ -259,9 +232,7 @@ namespace Viscoplastic
                                                       error_estimator.get(),
                                                       control,
                                                       timer);
-    if (accepted.forces.u.size() == 0) // only once
-      announcer.announce(*discretization);
-    announcer.warn_of_held_faces(*discretization);
+    announcer.announce(*discretization);
     announcer.announce_solver(time_stepper->method().solver_name());
     recorder.set_mesh(*discretization);
     if (files)
@@ -272,14 +243,19 @@ namespace Viscoplastic
 
   template <int dim>
   void
-  ViscoplasticContact<dim>::set_initial_state()
+  ViscoplasticContact<dim>::set_initial_state(bool mesh_changes)
   {
-    while (!resolve_initial_data(*discretization,
-                                 error_estimator.get(),
-                                 mesh_controller,
-                                 *time_stepper,
-                                 accepted))
-      change_first_mesh();
+    for (; mesh_changes || !resolve_initial_data(*discretization,
+                                                 error_estimator.get(),
+                                                 mesh_controller,
+                                                 *time_stepper,
+                                                 accepted);
+         mesh_changes = false)
+      {
+        TimerOutput::Scope phase(timer, "adaptation");
+        triangulation.execute_coarsening_and_refinement();
+        set_up();
+      }
     announcer.announce_equilibrium(scene, accepted.state);
   }
 
@@ -303,8 +279,7 @@ namespace Viscoplastic
     if (accepted.state.n == 0)
       {
         // Initial data projected to a coarse mesh would keep its errors.
-        change_first_mesh();
-        set_initial_state();
+        set_initial_state(/* mesh_changes = */ true);
         recorder.stop_clock();
       }
     else
@@ -313,23 +288,10 @@ namespace Viscoplastic
         pass.has_changed_mesh = true;
       }
     control.repeat();
-    out << "  mesh ";
-    if (mesh_controller.excess() >= 1.005)
-      out << number(mesh_controller.excess(), 3) << " times ";
-    out << "too coarse for step " << step.time_step.n << ", refined to "
-        << triangulation.n_global_active_cells() << " cells" << std::endl;
+    announcer.announce_refinement(step.time_step.n,
+                                  mesh_controller.excess(),
+                                  triangulation.n_global_active_cells());
     return true;
-  }
-
-
-
-  template <int dim>
-  void
-  ViscoplasticContact<dim>::change_first_mesh()
-  {
-    TimerOutput::Scope phase(timer, "adaptation");
-    triangulation.execute_coarsening_and_refinement();
-    set_up();
   }
 
 
@@ -339,15 +301,13 @@ namespace Viscoplastic
   ViscoplasticContact<dim>::change_mesh()
   {
     TimerOutput::Scope phase(timer, "adaptation");
-    MeshChange<dim>    change(error_estimator.get(),
-                           *discretization,
-                           accepted,
-                           triangulation);
-    triangulation.execute_coarsening_and_refinement();
-    set_up();
-    change.carry(*discretization, *time_stepper, accepted);
-    recorder.record_mesh_change(change.energies,
-                                energies_on_mesh(*discretization, accepted));
+    recorder.record_mesh_change(carry_to_marked_mesh(
+      error_estimator.get(),
+      discretization,
+      time_stepper,
+      triangulation,
+      [this] { set_up(); },
+      accepted));
   }
 
 
@@ -357,12 +317,15 @@ namespace Viscoplastic
   ViscoplasticContact<dim>::enter_next_stage()
   {
     TimerOutput::Scope phase(timer, "adaptation");
-    StageChange<dim>   change(error_estimator.get(), *discretization, accepted);
-    scene.enter_stage(scene.stage() + 1);
-    set_up();
-    change.carry(*discretization, *time_stepper, accepted);
-    recorder.record_stage(change.energies,
-                          energies_on_mesh(*discretization, accepted));
+    const auto         begin_stage = [this] {
+      scene.enter_stage(scene.stage() + 1);
+      set_up();
+    };
+    recorder.record_stage(carry_to_stage(error_estimator.get(),
+                                         discretization,
+                                         time_stepper,
+                                         begin_stage,
+                                         accepted));
     announcer.announce_stage(scene);
   }
 
@@ -370,33 +333,13 @@ namespace Viscoplastic
 
   template <int dim>
   void
-  ViscoplasticContact<dim>::resume(const CheckpointManifest &checkpoint)
+  ViscoplasticContact<dim>::resume(const CheckpointManifest &from)
   {
-    RunArchive<dim> archive(files->checkpoints,
-                            checkpoint,
-                            run_state,
-                            triangulation);
+    RunArchive<dim> archive(files->checkpoints, from, run_state, triangulation);
     scene.enter_stage(scene.stage_of_step_to(accepted.state.t));
     set_up();
     time_stepper->restore(accepted, archive.read_fields(*discretization));
     files->resume(archive);
-  }
-
-
-
-  template <int dim>
-  void
-  ViscoplasticContact<dim>::close()
-  {
-    recorder.check_sizes(/* at_end = */ true);
-    std::vector<std::string> remarks = console.remarks();
-    for (const std::string &remark : recorder.remarks(accepted.state))
-      remarks.push_back(remark);
-    recorder.print(out);
-    files->close(remarks);
-    for (const std::string &remark : remarks)
-      out << remark << '\n';
-    out << "Results in " << files->directory() << std::endl;
   }
 
 

@@ -5,6 +5,7 @@
 
 #include <fstream>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -33,15 +34,12 @@ namespace Viscoplastic
       probes.clear();
     }
 
-    /// Begin new files in a directory. Throws ExcMessage if they cannot be
-    /// written, as the functions below do. Collective.
+    /// Begin new files in a directory, or continue after step @p last_step,
+    /// dropping later rows. Throws ExcMessage if a file is missing, before any
+    /// is changed, or cannot be written, as the functions below do. Collective.
     void
-    begin(const std::string &directory);
-
-    /// Continue after step @p last_step, dropping later rows. Throws ExcMessage
-    /// also if a file is missing, before any is changed. Collective.
-    void
-    resume(const std::string &directory, const unsigned int last_step);
+    open(const std::string                 &directory,
+         const std::optional<unsigned int> &last_step = {});
 
     /// Write a state if it is due. @p fields_are_due: whether the fields of
     /// this state are written. Collective.
@@ -53,17 +51,14 @@ namespace Viscoplastic
     synchronize();
 
   private:
-    /// Set the names of the files; empty on ranks other than 0.
-    void
-    name_files(const std::string &directory);
-
     const Scene<dim>          &scene;
     std::set<RecordedField>    fields;
     const Discretization<dim> *discretization = nullptr;
     /// The fields along each line on the present mesh; empty until the first
     /// output.
     std::vector<std::unique_ptr<FieldProbes<dim>>> probes;
-    std::vector<std::string>                       names;
-    std::vector<std::ofstream>                     files;
+    /// The names of the files, and the files; empty on ranks other than 0.
+    std::vector<std::string>   names;
+    std::vector<std::ofstream> files;
   };
 } // namespace Viscoplastic

@@ -44,12 +44,9 @@ namespace Viscoplastic
       return times;
     }
 
-    /// Add estimated errors, costs and remarks to the record of the run. On all
-    /// ranks.
+    /// Complete the record of the run. On all ranks.
     void
-    record_end(const RunSummary<dim>          &summary,
-               const RunCosts                 &costs,
-               const std::vector<std::string> &remarks) const;
+    record_end(const RunEnd<dim> &end) const;
 
     const std::string &
     directory() const

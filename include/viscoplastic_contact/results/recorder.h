@@ -70,19 +70,36 @@ namespace Viscoplastic
            const AcceptedStep<dim>   &step,
            const SolutionErrors      &errors);
 
+    /// Record the initial state, before or after the first step from it.
+    /// Collective.
+    void
+    record_initial_state(TimeStepper<dim>     &time_stepper,
+                         const SolutionErrors &errors,
+                         EvaluatedState<dim>  &accepted);
+
+    /// Whether a state has been recorded in this process.
+    bool
+    has_begun() const
+    {
+      return !run.at_end.empty();
+    }
+
     /// Add a change of the mesh between two steps, which changes the energies
     /// of the state, to the energy balance.
     void
-    record_mesh_change(const EnergiesOnMesh &before,
-                       const EnergiesOnMesh &after)
+    record_mesh_change(const EnergyChange &change)
     {
-      balance.add_change(before, after, balance.adaptation_energy);
+      balance.add_change(change.before,
+                         change.after,
+                         balance.adaptation_energy);
     }
 
     void
-    record_stage(const EnergiesOnMesh &before, const EnergiesOnMesh &after)
+    record_stage(const EnergyChange &change)
     {
-      balance.add_change(before, after, balance.construction_energy);
+      balance.add_change(change.before,
+                         change.after,
+                         balance.construction_energy);
     }
 
     /// Continue from a state that earlier parts of the run have reached in @p
@@ -124,17 +141,6 @@ namespace Viscoplastic
     size_so_far() const
     {
       return run.controlled_errors().size;
-    }
-
-    /// Wall time of this process by phase, see run_phases; `set-up' is that of
-    /// the first mesh, while later ones belong to the adaptation.
-    std::map<std::string, double>
-    seconds() const
-    {
-      auto result = timer.get_summary_data(TimerOutput::total_wall_time);
-      if (pilot_seconds > 0.)
-        result["pilot run"] += pilot_seconds;
-      return result;
     }
 
     /// The wall time spent on effects of the scene so far.

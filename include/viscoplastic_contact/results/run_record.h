@@ -5,7 +5,6 @@
 #include <viscoplastic_contact/results/run_summary.h>
 #include <viscoplastic_contact/scene/scene.h>
 
-#include <map>
 #include <string>
 #include <vector>
 
@@ -29,28 +28,27 @@ namespace Viscoplastic
   void
   remove_other_lines(const std::string &path, std::size_t n_lines);
 
-  /// The costs of a run for run.json, which is read by studies.
-  struct RunCosts
+  /// What run.json has of the end of a run: results, and costs for studies.
+  template <int dim>
+  struct RunEnd
   {
-    /// Wall time by phase, see run_phases; after a restart, since then.
-    std::map<std::string, double> seconds;
-    /// Seconds of the phase `contact' due to friction, see RunBill.
-    double friction = 0.;
+    const RunSummary<dim> &summary;
+    const RunBill          bill;
     /// Memory of all ranks together in MB: before the run, and the largest.
-    double first_memory = 0., peak_memory = 0.;
+    double first_memory, peak_memory;
     /// The sizes by which the solver on the last mesh was chosen.
-    SolverDemand solver_demand;
+    SolverDemand             solver_demand;
+    std::vector<std::string> remarks;
   };
 
-  /// Write parameters.prm and run.json, from which a run can be reproduced,
-  /// with the errors of @p summary and with @p costs unless null, and with the
-  /// remarks of the run. On one rank.
+
+
+  /// Write parameters.prm and run.json, from which a run can be reproduced.
+  /// @p end is null before that. On one rank.
   template <int dim>
   void
-  write_record(const Scene<dim>               &scene,
-               const std::string              &path,
-               const unsigned int              n_ranks,
-               const RunSummary<dim>          *summary,
-               const RunCosts                 *costs,
-               const std::vector<std::string> &remarks = {});
+  write_record(const Scene<dim>  &scene,
+               const std::string &path,
+               const unsigned int n_ranks,
+               const RunEnd<dim> *end);
 } // namespace Viscoplastic

@@ -36,13 +36,17 @@ namespace Viscoplastic
     void
     announce_stage(const Scene<dim> &scene);
 
-    /// Announce the first mesh and warn of what no mesh can cure. Collective.
+    /// Announce the first mesh and warn of what no mesh can cure; of each mesh,
+    /// name contact boundaries whose nodes are all held otherwise. Collective.
     void
     announce(const Discretization<dim> &discretization);
 
-    /// Name contact boundaries whose nodes are all held otherwise. Collective.
+    /// Announce that the mesh was too coarse for step @p n, by a factor of @p
+    /// excess, and has been refined.
     void
-    warn_of_held_faces(const Discretization<dim> &discretization);
+    announce_refinement(const unsigned int             n,
+                        const double                   excess,
+                        const types::global_cell_index n_cells);
 
     /// Announce the linear solver once; @p name is empty before its first use.
     void
@@ -64,8 +68,12 @@ namespace Viscoplastic
     void
     warn_of_jumps(const AdmissibleSpace<dim> &space);
 
+    void
+    warn_of_held_faces(const Discretization<dim> &discretization);
+
     Console                     &console;
     std::string                  solver;
+    bool                         has_announced_mesh = false;
     std::set<types::boundary_id> held_faces;
   };
 } // namespace Viscoplastic

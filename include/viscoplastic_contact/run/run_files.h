@@ -90,9 +90,9 @@ namespace Viscoplastic
       signals.reset();
     }
 
-    /// Add final results, costs and @p remarks to the record of the run.
+    /// Print the final output and complete the record of the run.
     void
-    close(const std::vector<std::string> &remarks);
+    close();
 
   private:
     /// Lock the directories of results and checkpoints, as far as they exist

@@ -1,38 +1,15 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
-#include <deal.II/base/timer.h>
-#include <deal.II/distributed/tria.h>
-#include <deal.II/dofs/dof_handler.h>
 #include <deal.II/fe/fe_system.h>
 
-#include <viscoplastic_contact/base/console.h>
-#include <viscoplastic_contact/error/error_budget.h>
 #include <viscoplastic_contact/error/known_solution.h>
 #include <viscoplastic_contact/error/mesh_controller.h>
-#include <viscoplastic_contact/results/recorder.h>
 #include <viscoplastic_contact/run/announcer.h>
-#include <viscoplastic_contact/run/command_line.h>
 #include <viscoplastic_contact/run/run_files.h>
-#include <viscoplastic_contact/time_stepping/time_stepper.h>
-
-#include <functional>
-#include <memory>
-#include <optional>
 
 namespace Viscoplastic
 {
-  /// Tells budget and step control what a run to a tolerance has to know before
-  /// its first step, and refines its first mesh as far as it has to be. Returns
-  /// a remark, or none. Collective.
-  template <int dim>
-  using PilotRun =
-    std::function<std::string(ErrorBudget &,
-                              StepControl &,
-                              parallel::distributed::Triangulation<dim> &)>;
-
-
-
   /// The fully discrete problem P^hk (3.18)-(3.20) in total form, for one
   /// scene. This class owns the mesh, the spaces, the matrix and the state, and
   /// decides the order in which its collaborators work:
@@ -41,131 +18,103 @@ namespace Viscoplastic
   ///                      -> statistics, output, checkpoint
   ///                      -> mesh adaptation, before the next step
   ///
-  /// Displacements are in V_h, FE_Q(1) in each component (AdmissibleSpace).
-  /// Stresses and z are in Q_h, symmetric tensors of FE_DGQ(0), or of its
-  /// refinement at the Gauss points, whose cell means are what is reported
-  /// (StressSpace).
+  /// Displacements are in V_h (AdmissibleSpace), stresses and z in Q_h
+  /// (StressSpace). Functions throw ExcMessage with a sentence for the user.
   template <int dim>
   class ViscoplasticContact
   {
   public:
-    /// @p pilot_run is called in runs to a tolerance that do not follow() an
-    /// earlier pass. This and all member functions throw ExcMessage with a
-    /// sentence for the user.
-    ViscoplasticContact(const Parameters    &parameters,
-                        Console             &console,
-                        const PilotRun<dim> &pilot_run);
+    using Mesh = parallel::distributed::Triangulation<dim>;
+    /// Tells budget and step control what they have to know before the first
+    /// step, and refines the first mesh if it has to be. Returns a remark.
+    using PilotRun =
+      std::function<std::string(ErrorBudget &, StepControl &, Mesh &)>;
+
+    /// @p pilot_run: for runs to a tolerance that do not follow() another pass.
+    ViscoplasticContact(const Parameters &parameters,
+                        Console          &console,
+                        const PilotRun   &pilot_run);
 
     /// Simulate from the start or from a checkpoint. Returns a sentence if a
     /// signal has ended the run early, after a checkpoint. If another pass is
     /// needed, the final output is omitted.
     std::string
-    run(const CommandLine::Restart restart = CommandLine::Restart::no);
-
-    /// Run in one pass, without files and introductory output; returns the
-    /// summary at the end.
+    run(const CommandLine::Restart restart);
+    /// Run in one pass, without files and introductory output.
     RunSummary<dim>
     run_without_files();
 
-    /// Whether the finished pass has to be repeated on its final mesh, since
-    /// its mesh changed, see run_in_passes().
+    /// Whether a pass has to be repeated on its final mesh, see
+    /// run_in_passes().
     bool
     needs_another_pass() const;
-
-    /// Start on the final mesh of an @p earlier pass when this one runs, and
-    /// count the time of that pass as that of a pilot run.
+    /// Start on the final mesh of an @p earlier pass, which counts as pilot
+    /// run.
     void
     follow(const ViscoplasticContact<dim> &earlier);
 
   private:
+    /// Make and check the initial state.
+    void
+    begin();
+    /// Continue from a checkpoint, in the place of begin() and earlier steps.
+    void
+    resume(const CheckpointManifest &from);
+    /// Make everything that depends on the mesh.
+    void
+    set_up();
+    /// Set the initial data, (3.20), on a mesh that resolves them.
+    void
+    set_initial_state(bool mesh_changes = false);
+    /// Record and write the initial state, once: before the first step, or
+    /// after it if the first step may refine the mesh and start anew.
+    void
+    record_initial_state();
+    /// Make all steps. Returns a sentence if a signal has ended the run.
+    std::string
+    make_steps();
+    AcceptedStep<dim>
+    next_step();
+    /// Refine the mesh if it is too coarse for a step; whether to repeat that.
+    bool
+    refine_for(const AcceptedStep<dim> &step);
+    /// Change the mesh according to its marked cells.
+    void
+    change_mesh();
+    void
+    enter_next_stage();
     bool
     is_finished() const
     {
       return accepted.state.t >= scene.schedule.end_time();
     }
 
-    /// Do all work before the first step.
-    void
-    begin();
-    /// Make the initial state on the first mesh and perform the checks before
-    /// the first step.
-    void
-    begin_state();
-    /// Set the initial data, (3.20), refining the first mesh until it resolves
-    /// them.
-    void
-    set_initial_state();
-    /// Record and write the initial state, once. This is called before the
-    /// first step, or after it if the first step may refine the mesh and start
-    /// anew.
-    void
-    record_initial_state();
+    // The problem, its mesh, and V_h on it.
+    Scene<dim>          scene;
+    Mesh                triangulation;
+    const FESystem<dim> fe;
+    DoFHandler<dim>     dof_handler;
 
-    /// Make a step from the accepted state.
-    AcceptedStep<dim>
-    next_step();
-    /// Make all steps. Returns a sentence if a signal has ended the run.
-    std::string
-    make_steps();
-
-    /// Make everything that depends on the mesh.
-    void
-    set_up();
-    /// Refine the mesh of the accepted state if it is too coarse for a step
-    /// from there. Returns whether it was and the step has to be repeated.
-    bool
-    refine_for(const AcceptedStep<dim> &step);
-    /// Change the mesh according to its marked cells, without the state.
-    void
-    change_first_mesh();
-    /// Change the mesh according to its marked cells.
-    void
-    change_mesh();
-    /// Begin the next stage of construction.
-    void
-    enter_next_stage();
-
-    /// Continue from a checkpoint, in the place of begin() and earlier steps.
-    void
-    resume(const CheckpointManifest &checkpoint);
-    /// Print the final output and complete the record of the run.
-    void
-    close();
-
-    // The problem and its mesh.
-    const MPI_Comm                            communicator;
-    const Parameters                         &parameters;
-    Scene<dim>                                scene;
-    parallel::distributed::Triangulation<dim> triangulation;
-    const FESystem<dim>                       fe; // of V_h
-    DoFHandler<dim>                           dof_handler;
-
-    // Control of meshes and steps.
-    const PilotRun<dim>                  pilot_run;
-    std::unique_ptr<ErrorBudget>         budget; // null without a tolerance
+    // Control of passes, meshes and steps; pointers are null if not wanted.
+    PassState                            pass;
+    const PilotRun                       pilot_run;
+    std::unique_ptr<ErrorBudget>         budget;
     StepControl                          control;
     MeshController<dim>                  mesh_controller;
-    std::unique_ptr<ErrorEstimator<dim>> error_estimator; // null if not wanted
+    std::unique_ptr<ErrorEstimator<dim>> error_estimator;
 
-    // Constructed anew on each mesh.
+    // What is constructed anew on each mesh, and the last accepted state.
     std::unique_ptr<Discretization<dim>> discretization;
     std::unique_ptr<TimeStepper<dim>>    time_stepper;
+    EvaluatedState<dim>                  accepted;
 
-    /// The position of the run in its passes.
-    PassState pass;
-
-    /// The last accepted state.
-    EvaluatedState<dim> accepted;
-    bool                has_recorded_initial_state = false;
-
-    // Messages, timing and files.
+    // Messages, wall time by phase, records, and files unless run without.
     Console                     &console;
-    std::ostream                &out; // of the console
     Announcer<dim>               announcer;
-    TimerOutput                  timer; // wall time by phase
+    TimerOutput                  timer;
     KnownSolution<dim>           known_solution;
     Recorder<dim>                recorder;
-    RunState<dim>                run_state; // of a checkpoint
-    std::optional<RunFiles<dim>> files;     // absent in a run without
+    RunState<dim>                run_state;
+    std::optional<RunFiles<dim>> files;
   };
 } // namespace Viscoplastic

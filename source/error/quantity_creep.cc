@@ -76,6 +76,42 @@ namespace Viscoplastic
 
 
   template <int dim>
+  typename QuantityEstimator<dim>::CreepStep
+  QuantityEstimator<dim>::step_of_creep(const EvaluatedState<dim> &end,
+                                        const FlowRate            &rate) const
+  {
+    // Checkpoints keep the path of creep, not its time.
+    const StressSpace<dim> &stress_space = discretization.stress_space;
+    double                  square       = 0.;
+    std::size_t             i            = 0;
+    for (std::size_t c = 0; c < stress_space.n_cells(); ++c)
+      for (unsigned int s = 0; s < stress_space.n_samples; ++s, ++i)
+        square += stress_space.weight(c, s) *
+                  stress_space.moduli(c).complementary_square(rate.rate[i]);
+    square = Utilities::MPI::sum(square, stress_space.space.communicator);
+    // After a thousand relaxation times the body is practically incompressible.
+    // k is a power of sqrt(2), so that linear laws need few matrices.
+    const double longest = 1e3 / rate.relaxation_rate,
+                 time    = std::min(end.errors.creep_path / std::sqrt(square),
+                                 std::max(end.state.t, longest));
+    return {time,
+            std::exp2(0.5 *
+                      std::floor(2. * std::log2(std::min(time, longest))))};
+  }
+
+
+
+  template <int dim>
+  bool
+  QuantityEstimator<dim>::has_crept_on(const EvaluatedState<dim> &end,
+                                       const FlowRate            &rate) const
+  {
+    return linearized && step_of_creep(end, rate).k != linearized->k;
+  }
+
+
+
+  template <int dim>
   Vector<double>
   QuantityEstimator<dim>::products_of_creep(const EvaluatedState<dim> &end,
                                             const Creep               &creep,
@@ -85,12 +121,8 @@ namespace Viscoplastic
     const State<dim>       &state        = end.state;
     const FlowRate         &rate         = *end.rate;
     const StressSpace<dim> &stress_space = discretization.stress_space;
-    // After a thousand relaxation times the body is practically incompressible.
-    // k is a power of sqrt(2), so that linear laws need few matrices.
-    const double longest = 1e3 / rate.relaxation_rate,
-                 time    = std::min(creep.time, std::max(state.t, longest)),
-                 k       = std::exp2(
-                   0.5 * std::floor(2. * std::log2(std::min(time, longest))));
+    const CreepStep         step         = step_of_creep(end, rate);
+    const double            time = step.time, k = step.k;
     const auto now = discretization.laws.at(state.t, state.history);
     // The remainder contains the difference to tangents at the present state.
     // Where flow has ended, what has crept is not k |G|, and the tangents of
@@ -98,7 +130,8 @@ namespace Viscoplastic
     const auto has_changed = [&] {
       const auto [difference, size] =
         change(stress_space, linearized->rate_slope, rate.rate);
-      const double duration = creep.time > time ? creep.time : k;
+      const double duration =
+        creep.time > (1. + 1e-6) * time ? creep.time : k; // but for rounding
       return k * difference >
              largest_change * (creep.stress / creep.exponent + duration * size);
     };
@@ -128,7 +161,8 @@ namespace Viscoplastic
           dual_of_creep);
     const DualSolution<dim> &dual = dual_of_creep.solution;
     typename RecoveryEstimator<dim>::Linearization linearization{k / time, {}};
-    const bool is_rate_known = discretization.laws.source_solution == nullptr;
+    const bool is_sum        = discretization.scene().quantity->is_sum(),
+               is_rate_known = discretization.laws.source_solution == nullptr;
     if (!tangent->is_constant)
       linearization.remainder = [&](const std::size_t            c,
                                     const unsigned int           s,
@@ -150,18 +184,28 @@ namespace Viscoplastic
           is_rate_known && flow->n_history_variables == 0 ?
             rate.rate[i] :
             flow->step_rate(stress, of_law, k, stiffness, point);
+        // The part of what has crept that the step contains. Strain errors
+        // that came with the rest would count as unloading after it. (The work
+        // of friction counts present errors for all past slip: too much rather
+        // than too little.)
+        const double of_step = k * deviator(rate_now).norm(),
+                     of_all  = deviator(z).norm(),
+                     share =
+                       is_sum || of_all <= of_step ? 1. : of_step / of_all;
+        if (share == 0.)
+          return SymmetricTensor<2, 3>();
         // A correction by Newton's method would not do: from where nothing
         // flows it goes far beyond a yield surface.
         try
           {
-            return z + flow_change -
-                   implicit_irreversible_stress(*flow,
-                                                of_law + e,
-                                                z - k * rate_now,
-                                                k,
-                                                stiffness,
-                                                point,
-                                                z + flow_change);
+            return share * (z + flow_change -
+                            implicit_irreversible_stress(*flow,
+                                                         of_law + e,
+                                                         z - k * rate_now,
+                                                         k,
+                                                         stiffness,
+                                                         point,
+                                                         z + flow_change));
           }
         catch (const ExceptionBase &)
           {
@@ -177,7 +221,10 @@ namespace Viscoplastic
     sides = boundary_defects.missing_sides(state, dual.cartesian);
     // The same force moves the body more in the longer step.
     if (discretization.scene().quantity->is_force())
-      products *= linearization.share;
+      {
+        products *= linearization.share;
+        dual_of_creep.recovered.of_remainder *= linearization.share;
+      }
     else if (sides.size() > 0)
       sides /= linearization.share;
     return products;
@@ -186,5 +233,7 @@ namespace Viscoplastic
 
 
   VISCOPLASTIC_INSTANTIATE_MEMBER(QuantityEstimator, creep_of);
+  VISCOPLASTIC_INSTANTIATE_MEMBER(QuantityEstimator, step_of_creep);
+  VISCOPLASTIC_INSTANTIATE_MEMBER(QuantityEstimator, has_crept_on);
   VISCOPLASTIC_INSTANTIATE_MEMBER(QuantityEstimator, products_of_creep);
 } // namespace Viscoplastic

@@ -171,9 +171,18 @@ namespace Viscoplastic
             dual_problem.add_at_meetings(state, indicators);
             sums = sum_over_cells(indicators, triangulation);
             if (creeps)
-              estimate.space_at_least =
-                std::max(estimate.space_at_least,
-                         std::min(1., crept) * least_share * safety * sums[1]);
+              {
+                double least = std::min(1., crept) * least_share * sums[1];
+                // What the law takes beyond its tangents is not known well
+                // enough to reduce the rest.
+                if (const double beyond = dual_of_creep.recovered.of_remainder;
+                    beyond != 0. && !quantity.is_sum())
+                  least =
+                    std::max(least,
+                             std::abs(sums[0] - beyond) + std::abs(beyond));
+                estimate.space_at_least =
+                  std::max(estimate.space_at_least, safety * least);
+              }
             if (std::abs(of_products[0]) > std::abs(sums[0]))
               {
                 indicators = products;

@@ -58,6 +58,7 @@ namespace Viscoplastic
     const bool          dilates   = local.stress_space.mean_dilatation;
     const bool          is_first  = dual.curved.empty();
     std::vector<double> products(local.cells.size());
+    double              of_remainder = 0.;
     if (is_first)
       {
         const std::size_t n = nodes.size() * n_points;
@@ -139,15 +140,22 @@ namespace Viscoplastic
                                  dual.dilatation[i] / law.share;
                   }
                 if (law.remainder)
-                  product -= law.remainder(c,
-                                           s,
-                                           n_samples == 1 ? means[c] : eps[q],
-                                           -1. * of_step) *
-                             dual.strain[i] / law.share;
+                  {
+                    const double beyond =
+                      law.remainder(c,
+                                    s,
+                                    n_samples == 1 ? means[c] : eps[q],
+                                    -1. * of_step) *
+                      dual.strain[i] / law.share;
+                    product -= beyond;
+                    of_remainder -= weights[q] * beyond;
+                  }
                 products[c] += weights[q] * product;
               }
           }
       }
+    dual.of_remainder =
+      Utilities::MPI::sum(of_remainder, local.stress_space.space.communicator);
     return local.by_active_index(products);
   }
 

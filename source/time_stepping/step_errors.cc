@@ -162,7 +162,10 @@ namespace Viscoplastic
       error_estimator->assess_change(discretization.stress_space,
                                      accepted,
                                      end);
-      growth = growth_since_estimate(accepted, end);
+      // While little flows any more, single cells do, and a quantity feels it.
+      if (!quantity_estimator || old_rate == nullptr ||
+          !quantity_estimator->has_crept_on(accepted, *old_rate))
+        growth = growth_since_estimate(accepted, end);
       estimate_step(accepted, growth, step);
     }
     if (scene.has_viscosity() && !end.rate)

@@ -127,6 +127,11 @@ namespace Viscoplastic
            const EvaluatedState<dim>   &accepted,
            EvaluatedState<dim>         &end) const;
 
+    /// Whether the tangents of creep are those of another creep time than that
+    /// of a state with @p rate, so that the last estimate cannot serve on.
+    bool
+    has_crept_on(const EvaluatedState<dim> &end, const FlowRate &rate) const;
+
     /// The data kept from step to step.
     struct Memory
     {
@@ -187,6 +192,17 @@ namespace Viscoplastic
     creep_of(const State<dim> &state,
              const FlowRate   &rate,
              const double      time) const;
+
+    /// The step of backward Euler that stands for the creep up to a state.
+    struct CreepStep
+    {
+      /// Its length T, and that of the step of the tangents, at most a thousand
+      /// relaxation times.
+      double time, k;
+    };
+
+    CreepStep
+    step_of_creep(const EvaluatedState<dim> &end, const FlowRate &rate) const;
 
     /// Return the error of the quantity by wrong rates up to the end of a step,
     /// by active cell, and set @p sides to the missing sides with the dual

@@ -51,6 +51,8 @@ namespace Viscoplastic
       /// By part: the boundary vertices (`ends') at which eps* of w_h is
       /// curved, and those at which neither strain is extrapolated.
       std::vector<std::vector<bool>> curved, left;
+      /// The part of the remainder r in the sum of the last products.
+      double of_remainder = 0.;
     };
 
     /// A creeping body, linearized as one step of backward Euler.

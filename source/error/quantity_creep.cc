@@ -12,6 +12,10 @@ namespace Viscoplastic
     /// Tangents of creep are kept until the present compliance E^-1 + T
     /// dG/dsigma would differ by this, relatively and averaged over the body.
     constexpr double largest_change = 0.1;
+    /// The remainder of a law is in doubt at samples of which the step contains
+    /// less than this part of what has crept; rates that vary over the body
+    /// leave out a little where flow goes on.
+    constexpr double least_share_known = 0.9;
 
 
 
@@ -160,6 +164,7 @@ namespace Viscoplastic
           law,
           dual_of_creep);
     const DualSolution<dim> &dual = dual_of_creep.solution;
+    using Remainder = typename RecoveryEstimator<dim>::Linearization::Remainder;
     typename RecoveryEstimator<dim>::Linearization linearization{k / time, {}};
     const bool is_sum        = discretization.scene().quantity->is_sum(),
                is_rate_known = discretization.laws.source_solution == nullptr;
@@ -170,7 +175,7 @@ namespace Viscoplastic
                                     const SymmetricTensor<2, 3> &e) {
         const ViscoplasticLaw *flow = now.law(c);
         if (flow == nullptr)
-          return SymmetricTensor<2, 3>();
+          return Remainder();
         const std::size_t           i         = c * stress_space.n_samples + s;
         const Stiffness            &stiffness = stress_space.moduli(c);
         const SymmetricTensor<2, 3> stress =
@@ -184,32 +189,34 @@ namespace Viscoplastic
           is_rate_known && flow->n_history_variables == 0 ?
             rate.rate[i] :
             flow->step_rate(stress, of_law, k, stiffness, point);
-        // The part of what has crept that the step contains. Strain errors
-        // that came with the rest would count as unloading after it. (The work
-        // of friction counts present errors for all past slip: too much rather
-        // than too little.)
-        const double of_step = k * deviator(rate_now).norm(),
+        // The part of what has crept that the creep time contains. Strain
+        // errors that came with the rest would count as unloading after it.
+        // (The work of friction counts present errors for all past slip: too
+        // much rather than too little.)
+        const double of_step = time * deviator(rate_now).norm(),
                      of_all  = deviator(z).norm(),
                      share =
                        is_sum || of_all <= of_step ? 1. : of_step / of_all;
         if (share == 0.)
-          return SymmetricTensor<2, 3>();
+          return Remainder();
         // A correction by Newton's method would not do: from where nothing
         // flows it goes far beyond a yield surface.
         try
           {
-            return share * (z + flow_change -
-                            implicit_irreversible_stress(*flow,
-                                                         of_law + e,
-                                                         z - k * rate_now,
-                                                         k,
-                                                         stiffness,
-                                                         point,
-                                                         z + flow_change));
+            return Remainder{share *
+                               (z + flow_change -
+                                implicit_irreversible_stress(*flow,
+                                                             of_law + e,
+                                                             z - k * rate_now,
+                                                             k,
+                                                             stiffness,
+                                                             point,
+                                                             z + flow_change)),
+                             share < least_share_known};
           }
         catch (const ExceptionBase &)
           {
-            return SymmetricTensor<2, 3>(); // no such stress, as in softening
+            return Remainder(); // no such stress, as in softening
           }
       };
     Vector<double> products =
@@ -223,7 +230,7 @@ namespace Viscoplastic
     if (discretization.scene().quantity->is_force())
       {
         products *= linearization.share;
-        dual_of_creep.recovered.of_remainder *= linearization.share;
+        dual_of_creep.recovered.in_doubt *= linearization.share;
       }
     else if (sides.size() > 0)
       sides /= linearization.share;

@@ -174,9 +174,9 @@ namespace Viscoplastic
               {
                 double least = std::min(1., crept) * least_share * sums[1];
                 // What the law takes beyond its tangents is not known well
-                // enough to reduce the rest.
-                if (const double beyond = dual_of_creep.recovered.of_remainder;
-                    beyond != 0. && !quantity.is_sum())
+                // enough to reduce the rest where flow has changed.
+                if (const double beyond = dual_of_creep.recovered.in_doubt;
+                    beyond != 0.)
                   least =
                     std::max(least,
                              std::abs(sums[0] - beyond) + std::abs(beyond));

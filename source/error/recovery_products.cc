@@ -58,7 +58,7 @@ namespace Viscoplastic
     const bool          dilates   = local.stress_space.mean_dilatation;
     const bool          is_first  = dual.curved.empty();
     std::vector<double> products(local.cells.size());
-    double              of_remainder = 0.;
+    double              in_doubt = 0.;
     if (is_first)
       {
         const std::size_t n = nodes.size() * n_points;
@@ -141,21 +141,19 @@ namespace Viscoplastic
                   }
                 if (law.remainder)
                   {
-                    const double beyond =
-                      law.remainder(c,
-                                    s,
-                                    n_samples == 1 ? means[c] : eps[q],
-                                    -1. * of_step) *
-                      dual.strain[i] / law.share;
+                    const auto [stress, is_in_doubt] = law.remainder(
+                      c, s, n_samples == 1 ? means[c] : eps[q], -1. * of_step);
+                    const double beyond = stress * dual.strain[i] / law.share;
                     product -= beyond;
-                    of_remainder -= weights[q] * beyond;
+                    if (is_in_doubt)
+                      in_doubt -= weights[q] * beyond;
                   }
                 products[c] += weights[q] * product;
               }
           }
       }
-    dual.of_remainder =
-      Utilities::MPI::sum(of_remainder, local.stress_space.space.communicator);
+    dual.in_doubt =
+      Utilities::MPI::sum(in_doubt, local.stress_space.space.communicator);
     return local.by_active_index(products);
   }
 

@@ -446,7 +446,7 @@ class Killed(RestartCase):
             reference.run()
             with Job("slab_adaptive", self.OVERRIDES) as job:
                 n_kills, newest = 0, 0
-                while newest < 9:
+                while newest < 15:
                     process = job.start("--restart=auto")
                     wait_for(
                         lambda: max(job.steps(), default=0) > newest

@@ -291,11 +291,15 @@ namespace
           (2. * samples.position(c, s)[0] - samples.position(c, s)[1]) *
           unit_symmetric_tensor<3>());
     const RecoveryEstimator<dim> estimator(cells);
-    const auto                   multiply =
-      [&](const typename RecoveryEstimator<dim>::Linearization &law) {
-        typename RecoveryEstimator<dim>::OfDual dual;
-        return estimator.multiply(u, z, w, nullptr, law, dual);
-      };
+    double                       in_doubt = 0.;
+    using Linearization = typename RecoveryEstimator<dim>::Linearization;
+    const auto multiply = [&](const Linearization &law) {
+      typename RecoveryEstimator<dim>::OfDual dual;
+      const Vector<double>                    result =
+        estimator.multiply(u, z, w, nullptr, law, dual);
+      in_doubt = dual.in_doubt;
+      return result;
+    };
     const auto   products = multiply({1., {}});
     const double mu = 1. / 2.8, K = 1. / 0.6, lambda = K - 2. / 3. * mu;
     for (const auto &cell : body.space->cells)
@@ -323,18 +327,24 @@ namespace
     strain[0][0] = strain[0][1]        = 1.;
     const SymmetricTensor<2, 3> beyond = samples.moduli(0).stress(strain);
     std::vector<SymmetricTensor<2, 3>> errors, halves;
-    const auto                         remainder = [&](auto &list) {
-      return [&](const std::size_t,
-                 const unsigned int,
-                 const auto &,
-                 const auto &e) {
+    const auto remainder = [&](auto &list, const bool is_in_doubt) {
+      return [&, is_in_doubt](const std::size_t,
+                              const unsigned int,
+                              const auto &,
+                              const auto &e) {
         list.push_back(e);
-        return beyond;
+        return typename Linearization::Remainder{beyond, is_in_doubt};
       };
     };
-    const auto more      = multiply({1., remainder(errors)}),
-               half      = multiply({0.5, {}}),
-               half_more = multiply({0.5, remainder(halves)});
+    const auto more = multiply({1., remainder(errors, false)});
+    EXPECT_EQ(in_doubt, 0.);
+    const auto half      = multiply({0.5, {}}),
+               half_more = multiply({0.5, remainder(halves, true)});
+    EXPECT_NEAR(in_doubt,
+                Utilities::MPI::sum(half_more.mean_value() * half_more.size() -
+                                      half.mean_value() * half.size(),
+                                    MPI_COMM_WORLD),
+                1e-9);
     ASSERT_EQ(errors.size(), halves.size());
     for (std::size_t i = 0; i < errors.size(); ++i)
       EXPECT_NEAR((errors[i] - 0.5 * deviator(errors[i]) - halves[i]).norm(),

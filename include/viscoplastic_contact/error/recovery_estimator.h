@@ -51,8 +51,8 @@ namespace Viscoplastic
       /// By part: the boundary vertices (`ends') at which eps* of w_h is
       /// curved, and those at which neither strain is extrapolated.
       std::vector<std::vector<bool>> curved, left;
-      /// The part of the remainder r in the sum of the last products.
-      double of_remainder = 0.;
+      /// The sum of the last products of remainders in doubt.
+      double in_doubt = 0.;
     };
 
     /// A creeping body, linearized as one step of backward Euler.
@@ -61,12 +61,20 @@ namespace Viscoplastic
       /// The ratio of the step to the creep time, and so of its deviatoric
       /// strain to that of the body. At most 1.
       double share;
-      /// The remainder r of a strain error e at a sample of a cell: C e minus
-      /// the change of stress by the law; empty if the law is linear.
-      std::function<SymmetricTensor<2, 3>(const std::size_t            cell,
-                                          const unsigned int           sample,
-                                          const SymmetricTensor<2, 3> &strain,
-                                          const SymmetricTensor<2, 3> &e)>
+      /// The remainder r of a strain error e at a sample, C e minus the change
+      /// of stress by the law, and whether it is in doubt since the step
+      /// contains only a part of what has crept.
+      struct Remainder
+      {
+        SymmetricTensor<2, 3> stress;
+        bool                  is_in_doubt = false;
+      };
+      /// Return the remainder at a sample of a cell; empty if the law is
+      /// linear.
+      std::function<Remainder(const std::size_t            cell,
+                              const unsigned int           sample,
+                              const SymmetricTensor<2, 3> &strain,
+                              const SymmetricTensor<2, 3> &e)>
         remainder;
     };
 

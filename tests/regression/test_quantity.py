@@ -1095,7 +1095,7 @@ class EachKind(TestCase):
         # where that does not fade; 5.3 of an error at t = 10 that is by chance a third
         # of those before and after (4.3 when remainders in doubt could reduce it)
         column = "friction_force_x"
-        result = self.check(column, 0.7, 6, **held)
+        result = self.check(column, 0.7, 5.5, **held)
         self.assertLess(result["quantity_other"][-1], 0.2 * result[column][-1])
 
 

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <viscoplastic_contact/base/messages.h>
 #include <viscoplastic_contact/laws/pointwise_law.h>
 
 #include <algorithm>
@@ -282,9 +283,9 @@ namespace Viscoplastic
        {"Kelvin modulus exponent", "0", "k_1 <= 0. Unit: 1/stress."},
        {"Kelvin viscosity exponent", "0", "k_2 <= 0. Unit: 1/stress."},
        {"Stress cap",
-        "10",
-        "The von Mises stress beyond which these factors stay as they are. "
-        "Unit: stress."}});
+        "",
+        "The von Mises stress beyond which these factors stay as they are: "
+        "above the stress you expect. It has to be given. Unit: stress."}});
     return {"lubby2",
             "burgers for rock salt: eta_M, G_K and eta_K, given for small "
             "stresses, are multiplied by exp(m sigma_eq), exp(k_1 sigma_eq) "
@@ -293,6 +294,11 @@ namespace Viscoplastic
             "Salzkavernenbau, 1984.)",
             declare_entries(entries),
             [](const LawSection &section) {
+              if (section.prm.get("Stress cap").empty())
+                refuse("'" + section.path +
+                       "/Stress cap' is not given; beyond this von Mises "
+                       "stress moduli and viscosities fall no further, so "
+                       "choose one above the stress you expect.");
               return std::make_unique<Burgers>(section,
                                                /* is_linear = */ false);
             }};

@@ -169,6 +169,38 @@ namespace Viscoplastic
 
 
   void
+  Parameters::check_defaults_of_materials() const
+  {
+    const Tree declared = declared_entries(handler);
+    const auto check    = [&](const std::string &section,
+                           const std::string &name,
+                           const Tree        &entry) {
+      const std::string path  = section + '/' + name;
+      const auto        value = entry.get<std::string>("default_value");
+      if (origin_of(path).empty() && !value.empty() && value != "0" &&
+          has_unit(entry.get<std::string>("documentation")))
+        refuse("'" + path + "' is not given; its default, " + value +
+               ", means nothing in the units of the scene.");
+    };
+    const auto check_section = [&](const std::string        &section,
+                                   const MaterialParameters &given) {
+      const Tree       &entries = declared.get_child(section);
+      const std::string modulus = "Young's modulus";
+      if (given.voigt_matrix.empty())
+        check(section, modulus, entries.get_child(modulus));
+      if (const auto law = entries.get_child_optional(given.law))
+        for (const auto &[name, entry] : *law)
+          check(section + '/' + given.law, name, entry);
+    };
+    if (materials.empty())
+      check_section("Material", material);
+    for (const auto &[id, numbered] : materials)
+      check_section("Material " + std::to_string(id), numbered);
+  }
+
+
+
+  void
   Parameters::resolve_automatic_choices()
   {
     const bool has_tolerance = error_control.has_tolerance();
@@ -251,6 +283,8 @@ namespace Viscoplastic
                 enumeration(shared_libraries, shared_libraries.size()));
     if (!materials.empty())
       check_material(lines);
+    if (units.are_declared())
+      check_defaults_of_materials();
     if (!geometry.file.empty())
       {
         // The record of the run does not depend on the working directory.

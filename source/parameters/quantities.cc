@@ -176,6 +176,15 @@ namespace Viscoplastic
 
 
 
+  bool
+  has_unit(const std::string &documentation)
+  {
+    const auto unit = unit_of_entry(documentation, {});
+    return unit && !(unit->dimension && *unit->dimension == Dimension());
+  }
+
+
+
   std::string
   without_units(const std::string &text,
                 const EntryUnit   &entry,

@@ -218,7 +218,7 @@ namespace Viscoplastic
                      scene.unit(Quantity::volume) +
                      " at t = " + number(step.time_of_rate(), 6) +
                      scene.unit(Quantity::time) +
-                     "; beyond it the law is continued linearly.");
+                     "; beyond it the law is continued as `Stress cap' says.");
   }
 
 

@@ -396,7 +396,7 @@ class Block(TestCase):
         the section is the given force, and nothing is missing in the balances. Parts
         that come and go leave it so."""
         kelvin = {"Maxwell viscosity": 20, "Kelvin modulus": 2, "Kelvin viscosity": 1}
-        softening = {f"{name} exponent": -1 for name in kelvin}
+        softening = {f"{name} exponent": -1 for name in kelvin} | {"Stress cap": 10}
         bound, coefficient = {"Friction bound": 0.004}, {"Friction coefficient": 0.1}
         given = {"Normal stress": "-0.05*t"}
         soft = {"Compliance": 5}

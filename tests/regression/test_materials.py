@@ -444,10 +444,11 @@ class Refused(TestCase):
             "deformations in the plane with shear out of it",
         )
 
-    def test_norton_without_a_cap(self):
-        self.refused(
-            {"Material/Law": "norton"}, "'Material/norton/Stress cap' is not given"
-        )
+    def test_laws_without_a_cap(self):
+        for law in ("norton", "lubby2"):
+            self.refused(
+                {"Material/Law": law}, f"'Material/{law}/Stress cap' is not given"
+            )
 
     def test_negative_creep_rate(self):
         self.refused(

@@ -707,14 +707,26 @@ class Work(TestCase):
             self.assertIn("The scene is valid, with the remarks above.", text)
 
     def test_default_material(self):
-        """Is doubted where there are loads, with and without units."""
-        text = re.sub(r"(?s)subsection Material.*?\nend\n", "", SALT)
-        (self.work / "salt.prm").write_text(text)
-        said = self.program("--check", "salt.prm").stdout
+        """Means nothing in units; without, it is doubted where there are loads."""
+        for given, missing in (
+            (re.sub(r"set Young.*", "", SALT), "Material/Young's modulus"),
+            (re.sub(r"set Rate factor.*", "", SALT), "Material/norton/Rate factor"),
+        ):
+            (self.work / "salt.prm").write_text(given)
+            self.assertIn(
+                f"'{missing}' is not given; its default, 1, means nothing in the units",
+                self.program("--check", "salt.prm", code=1).stderr,
+            )
+        (self.work / "salt.prm").write_text(
+            "subsection Boundary 0\n set Role = traction\n set Traction = -6*t; 0\nend\n"
+            "subsection Boundary 1\n set Role = clamped\nend\n"
+            "subsection Boundary 2\n set Role = free\nend\n"
+            "subsection Boundary 3\n set Role = free\nend\n"
+        )
         self.assertIn(
-            "Warning: 'Material/Young's modulus' is not given, so that it is 1 MPa, its "
-            "default, beside 6 MPa, the traction of boundary 0.",
-            said,
+            "Warning: 'Material/Young's modulus' is not given, so that it is 1, its "
+            "default, beside 6, the traction of boundary 0.",
+            self.program("--check", "salt.prm").stdout,
         )
         at_rest = "".join(
             f"subsection Boundary {i}\n set Role = {'clamped' if i < 1 else 'free'}\nend\n"

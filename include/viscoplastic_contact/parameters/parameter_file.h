@@ -117,6 +117,11 @@ namespace Viscoplastic
     void
     check_material(const std::vector<ParameterLine> &lines) const;
 
+    /// Throw if a material has the default of a number with a unit: in units
+    /// that the scene chooses it means nothing.
+    void
+    check_defaults_of_materials() const;
+
     /// Replace choices `automatic' by their meaning in this scene. Throws
     /// ExcMessage if entries contradict `Error control/Tolerance'.
     void

@@ -36,6 +36,10 @@ namespace Viscoplastic
                 const EntryUnit   &entry,
                 const Units       &units);
 
+  /// Whether numbers in an entry have a unit, by its @p documentation.
+  bool
+  has_unit(const std::string &documentation);
+
   /// Return the units that the subsection `Units' in @p lines declares. Throws
   /// ExcMessage if they are wrong.
   Units

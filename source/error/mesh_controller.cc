@@ -85,6 +85,10 @@ namespace Viscoplastic
             std::function<void()>()))
       return false;
     ++n_refinements;
+    constexpr double much = 0.5;
+    has_settled =
+      scene.quantity && scene.quantity->is_sum() &&
+      settled(end.errors.quantity) > much * allowed(end.errors, so_far);
     return true;
   }
 
@@ -201,6 +205,32 @@ namespace Viscoplastic
 
   template <int dim>
   double
+  MeshController<dim>::allowed(const ErrorEstimate &errors,
+                               const double         so_far) const
+  {
+    return budget->space(budget->errors(errors),
+                         budget->size(std::max(so_far, budget->size(errors))),
+                         scene.has_time_error());
+  }
+
+
+
+  template <int dim>
+  double
+  MeshController<dim>::settled(const QuantityEstimate &quantity) const
+  {
+    const double all = quantity.space_correction,
+                 now = all - quantity.settled_space;
+    return QuantityEstimator<dim>::safety *
+           (scene.quantity->is_sum() ?
+              std::abs(quantity.settled_space) :
+              std::max(0., std::abs(all) - std::abs(now)));
+  }
+
+
+
+  template <int dim>
+  double
   MeshController<dim>::space_ratio(const ErrorEstimate &errors,
                                    const double         size_up_to_now) const
   {
@@ -209,8 +239,7 @@ namespace Viscoplastic
     // A body that has not moved yet says nothing about the mesh.
     if (!(size > 0.))
       return 1.;
-    const double allowed =
-      budget->space(budget->errors(errors), size, scene.has_time_error());
+    const double allowed = this->allowed(errors, so_far);
     if (!scene.quantity)
       {
         // A finer mesh removes errors of elastic strains, but not those of
@@ -230,22 +259,16 @@ namespace Viscoplastic
     // Errors of quantities behave like squares of the energy norm. As
     // contributions of cells may cancel by chance, their sizes count, too. The
     // settled part stays on any mesh; for other than sums it counts if it adds.
-    constexpr double safety = QuantityEstimator<dim>::safety;
-    const double     now = quantity.space_correction - quantity.settled_space;
-    const double
-      settled =
-        safety *
-        (scene.quantity->is_sum() ?
-           std::abs(quantity.settled_space) :
-           std::max(0., std::abs(quantity.space_correction) - std::abs(now))),
-      open = std::max(0.1 * allowed, allowed - settled),
-      of_mesh =
-        std::max(QuantityEstimator<dim>::with_safety(now, quantity.of_sides),
-                 quantity.space_at_least) +
-        quantity.of_boundary,
-      ratio = std::sqrt(
-        std::max(of_mesh, std::min(quantity.unsigned_space, 0.9 * open)) /
-        open);
+    const double now     = quantity.space_correction - quantity.settled_space,
+                 open    = std::max(0.1 * allowed, allowed - settled(quantity)),
+                 of_mesh = std::max(QuantityEstimator<dim>::with_safety(
+                                      now, quantity.of_sides),
+                                    quantity.space_at_least) +
+                           quantity.of_boundary,
+                 ratio = std::sqrt(
+                   std::max(of_mesh,
+                            std::min(quantity.unsigned_space, 0.9 * open)) /
+                   open);
     // A sum over steps grows again when a face that rests slips again.
     return scene.quantity->is_sum() ? std::max(1., ratio) : ratio;
   }

@@ -130,10 +130,16 @@ namespace Viscoplastic
   bool
   ViscoplasticContact<dim>::needs_another_pass() const
   {
-    return budget && scene.quantity && pass.has_changed_mesh &&
-           ((QuantityEstimator<dim>::is_of_creep(scene) &&
-             !scene.quantity->is_sum()) ||
-            (is_finished() && !pass.follows_another));
+    if (!budget || !scene.quantity)
+      return false;
+    if (pass.has_changed_mesh && ((QuantityEstimator<dim>::is_of_creep(scene) &&
+                                   !scene.quantity->is_sum()) ||
+                                  mesh_controller.begins_again() ||
+                                  (is_finished() && !pass.follows_another)))
+      return true;
+    const ErrorSummary &errors = recorder.summary().controlled_errors();
+    return is_finished() && errors.relative() > budget->tolerance &&
+           (pass.has_changed_mesh || budget->expected_size > errors.size);
   }
 
 
@@ -146,6 +152,8 @@ namespace Viscoplastic
     make_first_mesh<dim>(scene, triangulation, control, nullptr);
     refine_like(earlier.triangulation, triangulation);
     budget->expected_size = earlier.budget->expected_size;
+    if (earlier.is_finished())
+      budget->expect_size(earlier.recorder.size_so_far());
     control.expect_dual_norms_of(earlier.control);
     recorder.count_pilot_run(earlier.recorder);
   }

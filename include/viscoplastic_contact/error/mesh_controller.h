@@ -57,6 +57,15 @@ namespace Viscoplastic
       return ratio;
     }
 
+    /// Whether the run has to begin again on the mesh that mark_for_step() has
+    /// chosen, since what has settled of the error of a work of friction, which
+    /// no mesh removes, has more than half of what meshes are allowed.
+    bool
+    begins_again() const
+    {
+      return has_settled;
+    }
+
     /// Reset the counters of refinements after a step has been accepted.
     void
     accept_step()
@@ -86,9 +95,17 @@ namespace Viscoplastic
     estimate_is_rounding(const Discretization<dim> &discretization,
                          const EvaluatedState<dim> &accepted) const;
 
+    /// The absolute error that the mesh may make. @p so_far: as of mark().
+    double
+    allowed(const ErrorEstimate &errors, const double so_far) const;
+
     /// The ratio of the mesh error to the allowed one in a run to a tolerance.
     double
     space_ratio(const ErrorEstimate &errors, const double so_far) const;
+
+    /// The part of the error of a quantity that no mesh removes any more.
+    double
+    settled(const QuantityEstimate &quantity) const;
 
     /// Return a function that withdraws coarsening marks where z would lose too
     /// much for the tolerance; empty if no cells may be coarsened.
@@ -104,9 +121,10 @@ namespace Viscoplastic
     /// How often the mesh has been refined for the present step.
     unsigned int n_refinements = 0;
     /// The number of successive refinements in vain, and the last error.
-    unsigned int n_vain     = 0;
-    double       last_error = 0.;
-    double       ratio      = 0.;
+    unsigned int n_vain      = 0;
+    double       last_error  = 0.;
+    double       ratio       = 0.;
+    bool         has_settled = false;
 
     /// Update n_vain; return whether finer meshes do not lower the error.
     bool

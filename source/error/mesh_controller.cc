@@ -85,10 +85,19 @@ namespace Viscoplastic
             std::function<void()>()))
       return false;
     ++n_refinements;
-    constexpr double much = 0.5;
-    has_settled =
-      scene.quantity && scene.quantity->is_sum() &&
-      settled(end.errors.quantity) > much * allowed(end.errors, so_far);
+    // What cell means and locking do to the history goes on on any mesh. The
+    // error that coarse meshes leave in it may be twice as large as estimated.
+    constexpr double of_history = 1. / 3., of_work = 0.5;
+    if (!scene.quantity)
+      has_settled =
+        end.space_estimate.rate_defect == 0. &&
+        end.errors.history >
+          of_history * budget->tolerance *
+            budget->size(std::max(so_far, budget->size(end.errors)));
+    else
+      has_settled =
+        scene.quantity->is_sum() &&
+        settled(end.errors.quantity) > of_work * allowed(end.errors, so_far);
     return true;
   }
 
@@ -284,7 +293,7 @@ namespace Viscoplastic
   {
     // Creep and slip keep errors of earlier meshes, which the estimate of a
     // quantity does not contain: its mesh never becomes coarser.
-    if (scene.quantity)
+    if (scene.quantity || keeps_cells)
       return nullptr;
     return [this, &discretization, &accepted, so_far] {
       IrreversibleStress rest;

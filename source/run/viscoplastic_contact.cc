@@ -75,6 +75,8 @@ namespace Viscoplastic
   std::string
   ViscoplasticContact<dim>::make_steps()
   {
+    if (pass.follows_another)
+      mesh_controller.keep_cells();
     while (!is_finished())
       {
         if (scene.stage_is_over(accepted.state.t))
@@ -130,11 +132,12 @@ namespace Viscoplastic
   bool
   ViscoplasticContact<dim>::needs_another_pass() const
   {
+    if (pass.has_changed_mesh && mesh_controller.begins_again())
+      return true;
     if (!budget || !scene.quantity)
       return false;
     if (pass.has_changed_mesh && ((QuantityEstimator<dim>::is_of_creep(scene) &&
                                    !scene.quantity->is_sum()) ||
-                                  mesh_controller.begins_again() ||
                                   (is_finished() && !pass.follows_another)))
       return true;
     const ErrorSummary &errors = recorder.summary().controlled_errors();

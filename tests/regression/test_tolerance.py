@@ -72,6 +72,28 @@ class Kept(TestCase):
         # 104 000 and no end where children inherit what their parents have had
         self.assertLess(result["cells"].max(), 6000)
 
+    def test_what_coarse_meshes_leave_in_the_history(self):
+        """Has more than a third of the tolerance: the run begins again."""
+        scene = {
+            "Dimension": 2,
+            "Geometry/Arguments": "3, 2 : 0, 0 : 1.5, 0.8 : true",
+            **elastic_moduli(10, 0.35),
+            **of_law("maxwell", Viscosity=3),
+            **with_roles(free=(0, 1)),
+            **on_boundary(2, Role="contact", Contact_law="unilateral",
+                          Friction_law="coulomb", Friction_coefficient=0.3,
+                          Foundation_motion="0.05*max(t - 1, 0); 0"),
+            **on_boundary(3, Role="displacement", Displacement="0; -0.03*min(t, 1)"),
+            "Time/Phases": "1: 3, 3: 4",
+        }  # fmt: skip
+        result = run("history", {**scene, **to(0.35)}, text="")
+        # 0.38 and 81 cells if it went on; its true error was 0.97 of the tolerance,
+        # and of a block of burgers in 3D with 0.45 of it 1.2
+        left = result["estimate_history"].max() / result["energy_norm"].max()
+        self.assertLess(left, 0.35 / 3)
+        self.assertEqual(result.stdout.count("Again from the beginning"), 1)
+        self.assertIn("has been kept", result.stdout)
+
 
 class Meshes(TestCase):
     @classmethod

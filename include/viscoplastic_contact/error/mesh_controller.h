@@ -58,12 +58,20 @@ namespace Viscoplastic
     }
 
     /// Whether the run has to begin again on the mesh that mark_for_step() has
-    /// chosen, since what has settled of the error of a work of friction, which
-    /// no mesh removes, has more than half of what meshes are allowed.
+    /// chosen, since errors that earlier meshes have left in the history, or
+    /// what has settled of that of a work of friction, are more than half of
+    /// what is allowed.
     bool
     begins_again() const
     {
       return has_settled;
+    }
+
+    /// Coarsen no cells: those of a run that has begun again.
+    void
+    keep_cells()
+    {
+      keeps_cells = true;
     }
 
     /// Reset the counters of refinements after a step has been accepted.
@@ -124,7 +132,7 @@ namespace Viscoplastic
     unsigned int n_vain      = 0;
     double       last_error  = 0.;
     double       ratio       = 0.;
-    bool         has_settled = false;
+    bool         has_settled = false, keeps_cells = false;
 
     /// Update n_vain; return whether finer meshes do not lower the error.
     bool

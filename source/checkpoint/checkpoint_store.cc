@@ -1,15 +1,14 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <deal.II/base/mpi.h>
-#include <deal.II/base/utilities.h>
 
 #include <viscoplastic_contact/base/files.h>
 #include <viscoplastic_contact/base/messages.h>
 #include <viscoplastic_contact/checkpoint/checkpoint_store.h>
 
-#include <algorithm>
+#include <nlohmann/json.hpp>
+
 #include <filesystem>
 #include <regex>
-#include <sstream>
 
 namespace Viscoplastic
 {
@@ -18,140 +17,94 @@ namespace Viscoplastic
 
   namespace
   {
-    const std::string manifest_name = "manifest.txt";
-    const std::string unfinished = ".unfinished", outdated = ".outdated";
-    // The list that an unfinished checkpoint has instead of a manifest.
-    const std::string list_name       = "unfinished.txt";
-    const std::string first_of_a_list = "viscoplastic_contact list of files 1";
+    const std::string  manifest_name = "manifest.txt";
+    const std::string  key_of_format = "viscoplastic_contact checkpoint";
+    const unsigned int format        = 16;
 
 
 
-    std::string
-    read_file(const std::string &name)
-    {
-      const std::optional<std::string> bytes = read_file_if_any(name);
-      if (!bytes)
-        refuse("'" + name + "' cannot be read.");
-      return *bytes;
-    }
-
-
-
-    std::string
-    read_checked(const std::string              &directory,
-                 const CheckpointManifest::File &file)
-    {
-      std::error_code error;
-      const auto      size = fs::file_size(directory + file.name, error);
-      if (error)
-        refuse("the file " + excerpt(file.name) + " is missing");
-      if (size != file.size)
-        refuse("the file " + excerpt(file.name) + " has " +
-               std::to_string(size) + " bytes instead of " +
-               std::to_string(file.size));
-      std::string bytes = read_file(directory + file.name);
-      if (bytes.size() != file.size || checksum(bytes) != file.checksum)
-        refuse("the file " + excerpt(file.name) +
-               " does not have its checksum");
-      return bytes;
-    }
-
-
-
-    std::string
-    list_of_files(const std::vector<std::string> &names)
-    {
-      std::string text = first_of_a_list + '\n';
-      for (const std::string &name : names)
-        text += "file " + name + '\n';
-      return text;
-    }
-
-
-
-    /// Return the files in a directory that its manifest or list names, and
-    /// these two last: if removal in this order is interrupted, the rest is
-    /// still known. Empty if the directory is not from this program.
-    std::vector<std::string>
-    own_files(const std::string &directory)
-    {
-      std::vector<std::string> names, lists;
-      for (const auto &[name, beginning] :
-           {std::make_pair(manifest_name, first_words_of_manifests),
-            std::make_pair(list_name, first_of_a_list + '\n')})
-        {
-          const auto text = read_file_if_any(directory + '/' + name);
-          if (!text)
-            continue;
-          const bool is_ours =
-            text->compare(0, beginning.size(), beginning) == 0;
-          // A truncated list is the only file: all others come after it.
-          const bool is_begun =
-            name == list_name &&
-            beginning.compare(0, text->size(), *text) == 0 &&
-            std::distance(fs::directory_iterator(directory), {}) == 1;
-          if (!is_ours && !is_begun)
-            continue;
-          lists.push_back(name);
-          std::istringstream lines(*text);
-          std::string        line, key, file;
-          while (std::getline(lines, line))
-            if (std::istringstream words(line);
-                words >> key >> file && key == "file")
-              names.push_back(file);
-        }
-      names.insert(names.end(), lists.begin(), lists.end());
-      return names;
-    }
-
-
-
-    /// Remove the files that the program has written in a directory, and the
-    /// directory if it is empty then; otherwise adds a sentence to @p remarks.
-    /// Returns whether there was a manifest or list.
+    /// Whether a directory has a manifest of this program, of any version.
     bool
-    remove_own(const std::string &path, std::vector<std::string> &remarks)
+    is_finished(const fs::path &directory)
     {
-      const std::string note = "Note: '" + path + "' stays, since ";
-      if (!fs::is_directory(fs::symlink_status(path)))
-        {
-          remarks.push_back(note + "this program has made no such file.");
-          return false;
-        }
-      const std::vector<std::string> names = own_files(path);
-      for (const std::string &name : names)
-        {
-          const fs::path file = fs::path(path) / name;
-          if (name.find('/') == std::string::npos &&
-              fs::is_regular_file(fs::symlink_status(file)))
-            fs::remove(file);
-        }
-      std::vector<std::string> others;
-      for (const auto &entry : fs::directory_iterator(path))
-        others.push_back(excerpt(entry.path().filename().string()));
-      if (others.empty())
-        fs::remove(path);
-      else
-        {
-          std::sort(others.begin(), others.end());
-          remarks.push_back(note + "no manifest of this program names " +
-                            enumeration(others, 3) + " in it.");
-        }
-      return !names.empty();
+      const auto text = read_file_if_any(directory / manifest_name);
+      return text && text->find(key_of_format) != std::string::npos;
     }
 
 
 
-    /// Return @p path, with a number appended if it exists already.
-    std::string
-    unused(const std::string &path)
+    /// Remove the files that the program has written in a directory, the
+    /// manifest first, and the directory if it is empty then; otherwise adds a
+    /// sentence to @p remarks.
+    void
+    remove_own(const fs::path &directory, std::vector<std::string> &remarks)
     {
-      std::string result = path;
-      for (unsigned int i = 2; fs::exists(fs::symlink_status(result)); ++i)
-        result = path + '_' + std::to_string(i);
-      return result;
+      static const std::regex own("manifest[.]txt[.]part|run[.]bin|"
+                                  "(mesh|fields|quantity)_[0-9]+[.]bin");
+      bool                    has_removed = false;
+      if (is_finished(directory))
+        has_removed = fs::remove(directory / manifest_name);
+      std::vector<std::string> others;
+      for (const auto &entry : fs::directory_iterator(directory))
+        if (const std::string name = entry.path().filename().string();
+            std::regex_match(name, own) &&
+            fs::is_regular_file(entry.symlink_status()))
+          has_removed = fs::remove(entry.path());
+        else
+          others.push_back(excerpt(name));
+      std::sort(others.begin(), others.end());
+      if (others.empty())
+        fs::remove(directory);
+      else if (has_removed)
+        remarks.push_back("Note: '" + directory.string() +
+                          "' stays, since this program has not written " +
+                          enumeration(others, 3) + " in it.");
     }
   } // namespace
+
+
+
+  std::string
+  CheckpointManifest::text() const
+  {
+    nlohmann::ordered_json json{{key_of_format, format},
+                                {"version", version},
+                                {"ranks", n_ranks},
+                                {"step", n},
+                                {"time", t},
+                                {"files", files},
+                                {"parameters", parameters}};
+    json["checksum"] = checksum(json_text(json));
+    return json_text(json);
+  }
+
+
+
+  CheckpointManifest
+  CheckpointManifest::of_text(const std::string &text)
+  {
+    CheckpointManifest manifest;
+    try
+      {
+        auto       json = nlohmann::ordered_json::parse(text);
+        const auto sum  = json.at("checksum");
+        json.erase("checksum");
+        if (sum == checksum(json_text(json)) &&
+            json.at(key_of_format) == format)
+          {
+            json.at("version").get_to(manifest.version);
+            json.at("ranks").get_to(manifest.n_ranks);
+            json.at("step").get_to(manifest.n);
+            json.at("time").get_to(manifest.t);
+            json.at("files").get_to(manifest.files);
+            json.at("parameters").get_to(manifest.parameters);
+            return manifest;
+          }
+      }
+    catch (const nlohmann::json::exception &)
+      {} // see below
+    refuse("the manifest is damaged or of another version of the program");
+  }
 
 
 
@@ -159,43 +112,41 @@ namespace Viscoplastic
                                    const MPI_Comm     communicator)
     : directory(directory.back() == '/' ? directory : directory + '/')
     , communicator(communicator)
-    , rank(Utilities::MPI::this_mpi_process(communicator))
-    , n_ranks(Utilities::MPI::n_mpi_processes(communicator))
   {}
 
 
 
-  std::vector<CheckpointStore::Entry>
-  CheckpointStore::entries() const
+  void
+  CheckpointStore::on_root(const std::function<void()> &work) const
   {
-    static const std::regex name("step_([0-9]{6,9})([.](" +
-                                 unfinished.substr(1) + '|' +
-                                 outdated.substr(1) + ")(_[0-9]+)?)?");
-    std::vector<Entry>      result;
-    std::error_code         error;
-    fs::directory_iterator  place(directory, error);
+    fail_together(communicator, [&]() {
+      if (Utilities::MPI::this_mpi_process(communicator) == 0)
+        work();
+    });
+  }
+
+
+
+  std::map<unsigned int, bool>
+  CheckpointStore::steps() const
+  {
+    static const std::regex      name("step_([0-9]{6,9})");
+    std::map<unsigned int, bool> result;
+    std::error_code              error;
+    fs::directory_iterator       place(directory, error);
     if (error == std::errc::no_such_file_or_directory)
       return result;
     for (; !error && place != fs::directory_iterator(); place.increment(error))
       {
         const std::string file = place->path().filename().string();
         std::smatch       parts;
-        std::error_code   none;
-        if (!std::regex_match(file, parts, name) || !place->is_directory(none))
-          continue;
-        Entry entry;
-        entry.path        = directory + file;
-        entry.n           = std::stoul(parts[1]);
-        entry.is_complete = parts[2].length() == 0;
-        if (!entry.is_complete || entry.path == path(entry.n))
-          result.push_back(entry);
+        if (fs::is_directory(place->symlink_status()) &&
+            std::regex_match(file, parts, name))
+          result[std::stoul(parts[1])] = is_finished(place->path());
       }
     if (error)
       refuse("The directory '" + directory +
              "' for checkpoints cannot be read: " + error.message() + '.');
-    std::sort(result.begin(), result.end(), [](const Entry &a, const Entry &b) {
-      return std::make_pair(a.n, a.path) < std::make_pair(b.n, b.path);
-    });
     return result;
   }
 
@@ -204,10 +155,9 @@ namespace Viscoplastic
   void
   CheckpointStore::make_directory() const
   {
-    fail_together(communicator, [&]() {
+    on_root([&]() {
       std::error_code error;
-      if (rank == 0)
-        fs::create_directories(directory, error);
+      fs::create_directories(directory, error);
       if (error)
         refuse("The directory '" + directory +
                "' for checkpoints cannot be written; change "
@@ -222,84 +172,51 @@ namespace Viscoplastic
                          const std::map<std::string, std::string> &files,
                          const unsigned int                        n_kept) const
   {
-    const std::string        final_path = path(manifest.n);
-    std::string              temporary;
+    const std::string        place = path(manifest.n) + '/';
     std::vector<std::string> remarks;
-    const auto do_together = [&](const std::function<void()> &work) {
-      try
-        {
-          fail_together(communicator, work);
-        }
-      catch (const std::exception &exception)
-        {
-          // Free the space on disk; earlier checkpoints stay.
-          if (rank == 0 && !temporary.empty())
-            try
-              {
-                remove_own(temporary, remarks);
-              }
-            catch (const std::exception &)
-              {}
-          refuse("The checkpoint of step " + std::to_string(manifest.n) +
-                 " failed: " + reason(exception));
-        }
-    };
-
-    // Rank 0 lists all files before any of them is written.
-    std::vector<std::string> names;
-    for (const auto &file : files)
-      names.push_back(file.first);
-    const auto names_of_all = Utilities::MPI::gather(communicator, names);
-    do_together([&]() {
-      if (rank != 0)
-        return;
-      const std::string wanted = final_path + unfinished;
-      if (fs::exists(wanted))
-        remove_own(wanted, remarks);
-      temporary = unused(wanted) + '/';
-      fs::create_directories(temporary);
-      names.clear();
-      for (const auto &part : names_of_all)
-        names.insert(names.end(), part.begin(), part.end());
-      names.push_back(manifest_name);
-      write_file(temporary + list_name, list_of_files(names));
-    });
-    temporary = Utilities::MPI::broadcast(communicator, temporary);
-
-    std::vector<CheckpointManifest::File> mine;
-    do_together([&]() {
-      for (const auto &[name, bytes] : files)
-        {
-          write_file(temporary + name, bytes);
-          mine.push_back({name, bytes.size(), checksum(bytes)});
-        }
-    });
-
-    const auto all = Utilities::MPI::gather(communicator, mine);
-    do_together([&]() {
-      if (rank != 0)
-        return;
-      manifest.files.clear();
-      for (const auto &part : all)
-        manifest.files.insert(manifest.files.end(), part.begin(), part.end());
-      write_file(temporary + manifest_name, manifest.text());
-      fs::remove(temporary + list_name);
-      synchronize_directory(temporary);
-      // A directory cannot be renamed to an existing one.
-      std::string aside;
-      if (fs::exists(fs::symlink_status(final_path)))
-        {
-          aside = unused(final_path + outdated);
-          fs::rename(final_path, aside);
-        }
-      fs::rename(temporary, final_path);
-      synchronize_directory(directory);
-
-      if (!aside.empty())
-        remove_own(aside, remarks);
-      remove_before(manifest.n, n_kept, remarks);
-    });
-    return Utilities::MPI::broadcast(communicator, remarks);
+    try
+      {
+        on_root([&]() {
+          if (fs::exists(place))
+            remove_own(place, remarks);
+          fs::create_directories(place);
+        });
+        fail_together(communicator, [&]() {
+          for (const auto &[name, bytes] : files)
+            {
+              write_file(place + name, bytes);
+              manifest.files[name] = {{bytes.size(), checksum(bytes)}};
+            }
+        });
+        for (const auto &part :
+             Utilities::MPI::gather(communicator, manifest.files))
+          manifest.files.insert(part.begin(), part.end());
+        on_root([&]() {
+          synchronize_directory(place);
+          replace_file(place + manifest_name,
+                       manifest.text(),
+                       /* to_disk = */ true);
+          synchronize_directory(place);
+          synchronize_directory(directory);
+        });
+      }
+    catch (const std::exception &exception)
+      {
+        // Free the space on disk; earlier checkpoints stay.
+        if (Utilities::MPI::this_mpi_process(communicator) == 0)
+          try
+            {
+              remove_own(place, remarks);
+            }
+          catch (const std::exception &)
+            {}
+        refuse("The checkpoint of step " + std::to_string(manifest.n) +
+               " failed: " + reason(exception));
+      }
+    remarks            = Utilities::MPI::broadcast(communicator, remarks);
+    const auto removed = remove_others(manifest.n, n_kept).remarks;
+    remarks.insert(remarks.end(), removed.begin(), removed.end());
+    return remarks;
   }
 
 
@@ -307,34 +224,30 @@ namespace Viscoplastic
   std::optional<CheckpointManifest>
   CheckpointStore::newest(std::vector<std::string> &remarks) const
   {
-    std::vector<unsigned int> candidates;
-    fail_together(communicator, [&]() {
-      if (rank == 0)
-        for (const Entry &entry : entries())
-          if (entry.is_complete)
-            candidates.push_back(entry.n);
-    });
-    candidates = Utilities::MPI::broadcast(communicator, candidates);
-    std::reverse(candidates.begin(), candidates.end());
-    for (const unsigned int n : candidates)
-      {
-        std::string        text;
-        CheckpointManifest manifest;
+    std::map<unsigned int, bool> found;
+    on_root([&]() { found = steps(); });
+    found                      = Utilities::MPI::broadcast(communicator, found);
+    const unsigned int rank    = Utilities::MPI::this_mpi_process(communicator),
+                       n_ranks = Utilities::MPI::n_mpi_processes(communicator);
+    for (auto step = found.rbegin(); step != found.rend(); ++step)
+      if (step->second)
         try
           {
             // Only rank 0 reads: all ranks have to see the same text.
-            fail_together(communicator, [&]() {
-              if (rank == 0)
-                text = read_file(path(n) + '/' + manifest_name);
+            std::string text;
+            on_root([&]() {
+              text = read_file_if_any(path(step->first) + '/' + manifest_name)
+                       .value();
             });
             text = Utilities::MPI::broadcast(communicator, text);
+            CheckpointManifest manifest;
             fail_together(communicator, [&]() {
-              manifest = CheckpointManifest::of_text(text);
-              if (manifest.n != n)
-                refuse("it is of step " + std::to_string(manifest.n));
-              for (std::size_t i = rank; i < manifest.files.size();
-                   i += n_ranks)
-                read_checked(path(n) + '/', manifest.files[i]);
+              manifest       = CheckpointManifest::of_text(text);
+              manifest.n     = step->first;
+              unsigned int i = 0;
+              for (const auto &file : manifest.files)
+                if (i++ % n_ranks == rank)
+                  read(manifest, file.first);
             });
             return manifest;
           }
@@ -343,10 +256,9 @@ namespace Viscoplastic
             std::string why = reason(exception);
             if (why.back() == '.')
               why.pop_back();
-            remarks.push_back("the checkpoint '" + path(n) +
+            remarks.push_back("the checkpoint '" + path(step->first) +
                               "' cannot be used: " + why);
           }
-      }
     return {};
   }
 
@@ -356,10 +268,13 @@ namespace Viscoplastic
   CheckpointStore::read(const CheckpointManifest &manifest,
                         const std::string        &name) const
   {
-    for (const auto &file : manifest.files)
-      if (file.name == name)
-        return read_checked(path(manifest.n) + '/', file);
-    refuse("The checkpoint has no file " + name + ".");
+    const auto bytes = read_file_if_any(path(manifest.n) + '/' + name);
+    if (!bytes)
+      refuse("the file " + excerpt(name) + " is missing");
+    const auto expected = manifest.files.at(name);
+    if (bytes->size() != expected[0] || checksum(*bytes) != expected[1])
+      refuse("the file " + excerpt(name) + " is damaged");
+    return *bytes;
   }
 
 
@@ -369,18 +284,19 @@ namespace Viscoplastic
                                  const unsigned int n_kept) const
   {
     Removal removal;
-    fail_together(communicator, [&]() {
-      if (rank != 0)
-        return;
-      const std::vector<Entry> found = entries();
+    on_root([&]() {
+      unsigned int kept  = 0;
+      const auto   found = steps();
       try
         {
-          for (const Entry &entry : found)
-            if ((n_kept == 0 || entry.n > n || !entry.is_complete) &&
-                remove_own(entry.path, removal.remarks) && entry.is_complete)
-              ++removal.n_checkpoints;
-          if (n_kept > 0)
-            remove_before(n, n_kept, removal.remarks);
+          for (auto step = found.rbegin(); step != found.rend(); ++step)
+            if (step->second && step->first <= n && kept < n_kept)
+              ++kept;
+            else
+              {
+                remove_own(path(step->first), removal.remarks);
+                removal.n_checkpoints += step->second;
+              }
         }
       catch (const std::exception &exception)
         {
@@ -392,20 +308,5 @@ namespace Viscoplastic
       Utilities::MPI::broadcast(communicator, removal.n_checkpoints);
     removal.remarks = Utilities::MPI::broadcast(communicator, removal.remarks);
     return removal;
-  }
-
-
-
-  void
-  CheckpointStore::remove_before(const unsigned int        n,
-                                 const unsigned int        n_kept,
-                                 std::vector<std::string> &remarks) const
-  {
-    std::vector<std::string> older;
-    for (const Entry &entry : entries())
-      if (entry.is_complete && entry.n < n && !own_files(entry.path).empty())
-        older.push_back(entry.path);
-    for (std::size_t i = 0; i + n_kept <= older.size(); ++i)
-      remove_own(older[i], remarks);
   }
 } // namespace Viscoplastic

@@ -4,6 +4,13 @@
 #include <viscoplastic_contact/base/version.h>
 #include <viscoplastic_contact/checkpoint/run_archive.h>
 
+#include <boost/archive/binary_iarchive.hpp>
+#include <boost/archive/binary_oarchive.hpp>
+#include <boost/serialization/vector.hpp>
+
+#include <numeric>
+#include <sstream>
+
 namespace Viscoplastic
 {
   namespace
@@ -20,41 +27,21 @@ namespace Viscoplastic
 
 
 
-    /// Return the values of all entries and the checksums of files of tables.
+    /// Return the values of all entries and the checksums of files of tables
+    /// and meshes.
+    template <int dim>
     std::map<std::string, std::string>
-    values_with_tables(const Parameters &parameters)
+    values_with_files(
+      const Parameters                                &parameters,
+      const parallel::distributed::Triangulation<dim> &triangulation)
     {
       auto values = parameters.values();
       for (const auto &table : tables_in_use())
         values[table->section + "/Checksum of the file"] =
           std::to_string(table->checksum);
+      values["Geometry/Checksum of the mesh"] =
+        checksum_of_coarse_mesh(triangulation);
       return values;
-    }
-
-
-
-    /// Write or read the data that are the same on all ranks, except for those
-    /// that each step computes anew.
-    template <int dim, typename Archive>
-    void
-    exchange_run(Archive &archive, RunState<dim> &run)
-    {
-      EvaluatedState<dim> &accepted = run.accepted;
-      State<dim>          &state    = accepted.state;
-      archive &state.n &state.t &state.k &state.time_error_unit &accepted
-        .is_solution &accepted.has_slip_rate;
-      archive &accepted.space_estimate.total &accepted.space_estimate
-        .rate_defect;
-      ContactReport &report = accepted.report;
-      archive &report.duality_gap &report.relative_error &report.error &report
-        .tolerance;
-      run.control.exchange(archive);
-      if (run.budget != nullptr)
-        archive &run.budget->expected_size &run.budget->unavoidable &run.pass
-          .follows_another &run.pass.has_changed_mesh;
-      if (run.scene.parameters.error_control.error_estimator)
-        accepted.errors.exchange(archive);
-      run.recorder.exchange(archive);
     }
 
 
@@ -62,7 +49,7 @@ namespace Viscoplastic
     /// Write or read whether a value is present; on reading, make it so.
     template <typename Archive, typename T>
     bool
-    exchange_presence(Archive &archive, std::optional<T> &value)
+    serialize_presence(Archive &archive, std::optional<T> &value)
     {
       bool     is_there = value.has_value();
       archive &is_there;
@@ -73,17 +60,36 @@ namespace Viscoplastic
 
 
 
-    /// Write or read the data that the time stepper keeps between steps, except
-    /// for truncations and fields, which have values at nodes and samples.
+    /// Write or read the data that are the same on all ranks, except for those
+    /// that each step computes anew.
     template <int dim, typename Archive>
     void
-    exchange_memory(Archive &archive, StepperMemory<dim> &memory)
+    serialize_run(Archive            &archive,
+                  RunState<dim>      &run,
+                  StepperMemory<dim> &memory,
+                  ArchivedData       &data)
     {
+      archive &data.meshes &data.fields[0] & data.fields[1];
+      archive &data.has_estimate &data.is_solution &data.output_times &data
+        .earlier_seconds;
+      EvaluatedState<dim> &accepted = run.accepted;
+      State<dim>          &state    = accepted.state;
+      archive &state.n &state.t &state.k &state.time_error_unit &accepted
+        .has_slip_rate;
+      archive &accepted.space_estimate.total &accepted.space_estimate
+        .rate_defect;
+      ContactReport &report = accepted.report;
+      archive &report.duality_gap &report.relative_error &report.error &report
+        .tolerance &run.control;
+      if (run.budget != nullptr)
+        archive &run.budget->expected_size &run.budget->unavoidable &run.pass
+          .follows_another &run.pass.has_changed_mesh;
+      archive &accepted.errors &run.recorder;
       for (std::optional<PreconditionerState> &kept : memory.preconditioners)
-        if (exchange_presence(archive, kept))
+        if (serialize_presence(archive, kept))
           archive & kept->best_rate & kept->lost_iterations & kept->is_fresh;
       std::optional<State<dim>> &linearized = memory.quantity.linearized;
-      if (exchange_presence(archive, linearized))
+      if (serialize_presence(archive, linearized))
         archive & linearized->t & linearized->k;
     }
 
@@ -204,15 +210,21 @@ namespace Viscoplastic
 
 
     /// Whether error control to a tolerance is switched on or off, which needs
-    /// other meshes and schemes. The tolerance itself may change.
+    /// other meshes and schemes, or a field that is a sum over all steps. The
+    /// tolerance and other fields may change.
     bool
     is_switched(const std::string &path,
                 const std::string &old_value,
                 const std::string &value)
     {
-      return path == "Error control/Tolerance" &&
-             (Utilities::string_to_double(old_value) > 0.) !=
-               (Utilities::string_to_double(value) > 0.);
+      const auto is_on = [&path](const std::string &text) {
+        return path == "Error control/Tolerance" ?
+                 Utilities::string_to_double(text) > 0. :
+                 text.find("friction work") != std::string::npos;
+      };
+      return (path == "Error control/Tolerance" ||
+              path == "Output/Additional fields") &&
+             is_on(old_value) != is_on(value);
     }
 
 
@@ -269,48 +281,54 @@ namespace Viscoplastic
     const State<dim>     &state = run.accepted.state;
     const Vector<double> &indicators =
       run.accepted.space_estimate.squared_indicators;
-    PackedRun           packed;
-    CheckpointManifest &manifest = packed.manifest;
-    manifest.n                   = state.n;
-    manifest.t                   = state.t;
-    manifest.dimension           = dim;
-    manifest.n_ranks    = Utilities::MPI::n_mpi_processes(communicator);
-    manifest.version    = version;
-    manifest.parameters = values_with_tables(run.scene.parameters);
-
-    packed.files[file_of_rank("mesh", rank)] = pack_mesh(triangulation);
-    StepperMemory<dim> memory                = time_stepper.memory();
-    packed.files[file_of_rank("fields", rank)] =
-      pack_fields(discretization.stress_space,
-                  discretization.face.get(),
-                  state,
-                  truncations(std::as_const(memory)),
-                  indicators);
-    const State<dim> of_quantity =
+    StepperMemory<dim> memory = time_stepper.memory();
+    const State<dim>   of_quantity =
       fields_of_quantity<dim>(memory.quantity, state.contact);
+    ArchivedData data{Utilities::MPI::gather(communicator,
+                                             pack_mesh(triangulation)),
+                      {{fields_present(state, communicator),
+                        fields_present(of_quantity, communicator)}},
+                      indicators.size() > 0,
+                      run.accepted.is_solution,
+                      output_times,
+                      run.recorder.elapsed_in_all()};
+    PackedRun    packed{{state.n,
+                         state.t,
+                         Utilities::MPI::n_mpi_processes(communicator),
+                         version,
+                         values_with_files(run.scene.parameters, triangulation),
+                         {}},
+                     {}};
+    const auto   write = [&packed](const std::string &name, const auto &act) {
+      std::ostringstream              bytes;
+      boost::archive::binary_oarchive archive(bytes);
+      act(archive);
+      packed.files[name] = bytes.str();
+    };
+    const auto write_fields = [&](const std::string    &kind,
+                                  const State<dim>     &fields,
+                                  const auto           &truncations,
+                                  const Vector<double> &estimate) {
+      const CellValues values = pack_fields(discretization.stress_space,
+                                            discretization.face.get(),
+                                            fields,
+                                            truncations,
+                                            estimate);
+      write(file_of_rank(kind, rank),
+            [&](auto &archive) { archive << values; });
+    };
+    write_fields("fields",
+                 state,
+                 truncations(std::as_const(memory)),
+                 indicators);
     if (run.scene.quantity)
-      packed.files[file_of_rank("quantity", rank)] =
-        pack_fields(discretization.stress_space,
-                    discretization.face.get(),
-                    of_quantity,
-                    dual_truncations(std::as_const(memory)),
-                    Vector<double>());
+      write_fields("quantity",
+                   of_quantity,
+                   dual_truncations(std::as_const(memory)),
+                   Vector<double>());
     if (rank == 0)
-      {
-        const CoarseMesh coarse_mesh = describe_coarse_mesh(triangulation);
-        BinaryWriter     archive;
-        archive &coarse_mesh.topology &coarse_mesh.vertices;
-        for (const DistributedVector *field : nodal_fields(state))
-          archive &(field->size() > 0);
-        archive &(indicators.size() > 0);
-        archive &output_times;
-        archive &run.recorder.elapsed_in_all();
-        exchange_run(archive, run);
-        exchange_memory(archive, memory);
-        for (const DistributedVector *field : nodal_fields(of_quantity))
-          archive &(field->size() > 0);
-        packed.files[run_file] = archive.bytes();
-      }
+      write(run_file,
+            [&](auto &archive) { serialize_run(archive, run, memory, data); });
     return packed;
   }
 
@@ -323,39 +341,61 @@ namespace Viscoplastic
     RunState<dim>                             &run,
     parallel::distributed::Triangulation<dim> &triangulation)
     : changes(compare_parameters(checkpoint.parameters,
-                                 values_with_tables(run.scene.parameters)))
+                                 values_with_files(run.scene.parameters,
+                                                   triangulation)))
     , store(store)
     , checkpoint(checkpoint)
     , run(run)
   {
-    const std::string path = store.path(checkpoint.n),
-                      name = "The checkpoint '" + path + "'";
-    if (checkpoint.dimension != dim || !changes.forbidden.empty())
-      refuse(name + " cannot go on with other unknowns: " +
+    const std::string path = store.path(checkpoint.n);
+    if (!changes.forbidden.empty())
+      refuse("The checkpoint '" + path +
+             "' cannot go on with other unknowns: " +
              enumeration(changes.forbidden) +
              "; undo that, or begin without --restart.");
-    BinaryReader archive(store.read(checkpoint, run_file));
-    CoarseMesh   coarse_mesh;
-    archive &coarse_mesh.topology &coarse_mesh.vertices;
-    if (!coarse_mesh.agrees_with(describe_coarse_mesh(triangulation)))
-      refuse(name + " belongs to another coarse mesh.");
-    for (bool &has_field : has_nodal_field)
-      archive &has_field;
-    if (has_nodal_field[3] != run.scene.keeps_friction_work())
-      refuse(name + " cannot go on with another sum: `friction work' among "
-                    "'Output/Additional fields' has to be there from the "
-                    "beginning or not at all.");
-    archive &has_estimate &output_times &earlier_seconds;
-    exchange_run(archive, run);
-    is_solution = run.accepted.is_solution;
-    exchange_memory(archive, memory);
-    for (bool &has_field : has_field_of_quantity)
-      archive &has_field;
-    has_bytes_to_spare = !archive.is_at_end();
+    std::istringstream              bytes(store.read(checkpoint, run_file));
+    boost::archive::binary_iarchive archive(bytes);
+    serialize_run(archive, run, memory, data);
     check_schedule(run, path);
-    for (unsigned int r = 0; r < checkpoint.n_ranks; ++r)
-      meshes.push_back(store.read(checkpoint, file_of_rank("mesh", r)));
-    restore_mesh(meshes, triangulation);
+    restore_mesh(data.meshes, triangulation);
+  }
+
+
+
+  template <int dim>
+  CellValues
+  RunArchive<dim>::read_cells(const std::string          &kind,
+                              const AdmissibleSpace<dim> &space) const
+  {
+    // Ranks own consecutive cells, now and when the checkpoint was written.
+    const auto sizes =
+      Utilities::MPI::all_gather(space.communicator, space.cells.size());
+    const std::size_t end = std::accumulate(
+      sizes.begin(),
+      sizes.begin() + Utilities::MPI::this_mpi_process(space.communicator) + 1,
+      std::size_t(0));
+    const std::size_t begin = end - space.cells.size();
+    CellValues        result;
+    std::size_t       first = 0; // of a rank of the checkpoint
+    fail_together(space.communicator, [&]() {
+      for (unsigned int r = 0; r < data.meshes.size(); ++r)
+        {
+          const std::size_t n =
+            data.meshes[r].size() / std::tuple_size_v<CellId::binary_type>;
+          if (begin < first + n && first < end)
+            {
+              std::istringstream bytes(
+                store.read(checkpoint, file_of_rank(kind, r)));
+              CellValues part;
+              boost::archive::binary_iarchive(bytes) >> part;
+              for (std::size_t i = 0; i < part.size(); ++i)
+                if (begin <= first + i && first + i < end)
+                  result.push_back(std::move(part[i]));
+            }
+          first += n;
+        }
+    });
+    return result;
   }
 
 
@@ -364,67 +404,37 @@ namespace Viscoplastic
   StepperMemory<dim>
   RunArchive<dim>::read_fields(const Discretization<dim> &discretization)
   {
-    const MPI_Comm communicator =
-      discretization.space.dof_handler.get_communicator();
-    const unsigned int rank    = Utilities::MPI::this_mpi_process(communicator);
-    const unsigned int n_ranks = Utilities::MPI::n_mpi_processes(communicator);
-    const auto unpack = [&](const unsigned int begin, const unsigned int end) {
-      PackedFields packed{{meshes.begin() + begin, meshes.begin() + end},
-                          {},
-                          has_nodal_field,
-                          has_estimate,
-                          ErrorEstimator<dim>::has_sample_fields(run.scene)};
-      for (unsigned int r = begin; r < end; ++r)
-        packed.fields.push_back(
-          store.read(checkpoint, file_of_rank("fields", r)));
-      bool complete =
-        unpack_fields(packed,
+    Vector<double> &indicators = run.accepted.space_estimate.squared_indicators;
+    if (data.has_estimate)
+      indicators.reinit(
+        discretization.space.dof_handler.get_triangulation().n_active_cells());
+    unpack_fields(read_cells("fields", discretization.space),
+                  data.fields[0],
+                  discretization.stress_space,
+                  discretization.face.get(),
+                  run.accepted.state,
+                  truncations(memory),
+                  indicators);
+    if (changes.of_data)
+      memory.quantity = {}; // linearized with other data
+    else if (run.scene.quantity)
+      {
+        Vector<double> no_estimate;
+        State<dim>     fields =
+          fields_of_quantity<dim>(memory.quantity, ContactState());
+        unpack_fields(read_cells("quantity", discretization.space),
+                      data.fields[1],
                       discretization.stress_space,
                       discretization.face.get(),
-                      run.accepted.state,
-                      truncations(memory),
-                      run.accepted.space_estimate.squared_indicators);
-      if (complete && run.scene.quantity)
-        {
-          packed.fields.clear();
-          for (unsigned int r = begin; r < end; ++r)
-            packed.fields.push_back(
-              store.read(checkpoint, file_of_rank("quantity", r)));
-          const bool has_state    = has_field_of_quantity[0];
-          packed.has_nodal_field  = has_field_of_quantity;
-          packed.has_sample_field = {{has_state,
-                                      false,
-                                      has_state,
-                                      false,
-                                      has_state && packed.has_sample_field[4],
-                                      false,
-                                      false}};
-          packed.has_estimate     = false;
-          Vector<double> no_estimate;
-          State<dim>     fields =
-            fields_of_quantity<dim>(memory.quantity, ContactState());
-          complete          = unpack_fields(packed,
-                                   discretization.stress_space,
-                                   discretization.face.get(),
-                                   fields,
-                                   dual_truncations(memory),
-                                   no_estimate);
-          memory.quantity.w = {{fields.velocity, fields.initial_u}};
-          if (memory.quantity.linearized)
-            memory.quantity.linearized = std::move(fields);
-        }
-      return !Utilities::MPI::logical_or(!complete, communicator);
-    };
-    // On as many ranks as before, each rank has all data in its own file.
-    if (((n_ranks != checkpoint.n_ranks || !unpack(rank, rank + 1)) &&
-         !unpack(0, checkpoint.n_ranks)) ||
-        has_bytes_to_spare)
-      refuse("The checkpoint '" + store.path(checkpoint.n) +
-             "' does not fit the scene.");
-    if (changes.of_data) // linearized with other data
-      memory.quantity = {};
+                      fields,
+                      dual_truncations(memory),
+                      no_estimate);
+        memory.quantity.w = {{fields.velocity, fields.initial_u}};
+        if (memory.quantity.linearized)
+          memory.quantity.linearized = std::move(fields);
+      }
     // With changed data, the restored state does not solve its step.
-    run.accepted.is_solution = is_solution && !changes.of_data;
+    run.accepted.is_solution = data.is_solution && !changes.of_data;
     run.accepted.forces =
       evaluate_forces(discretization.stress_space,
                       discretization.matrix,

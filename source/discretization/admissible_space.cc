@@ -232,6 +232,19 @@ namespace Viscoplastic
 
 
   template <int dim>
+  void
+  AdmissibleSpace<dim>::renew_ghosts(DistributedVector &vector) const
+  {
+    DistributedVector entries = owned_vector();
+    for (std::size_t i = 0; i < owned.n_elements(); ++i)
+      entries.begin()[i] = vector(owned.nth_index_in_set(i));
+    vector = ghosted_vector();
+    vector = entries;
+  }
+
+
+
+  template <int dim>
   types::global_dof_index
   AdmissibleSpace<dim>::n_first_dofs() const
   {

@@ -3,10 +3,15 @@
 #include <deal.II/base/quadrature_lib.h>
 #include <deal.II/fe/mapping_q1.h>
 
-#include <viscoplastic_contact/base/binary_archive.h>
 #include <viscoplastic_contact/base/files.h>
 #include <viscoplastic_contact/base/messages.h>
 #include <viscoplastic_contact/error/reference_fields.h>
+
+#include <boost/archive/binary_iarchive.hpp>
+#include <boost/archive/binary_oarchive.hpp>
+#include <boost/serialization/vector.hpp>
+
+#include <sstream>
 
 namespace Viscoplastic
 {
@@ -328,11 +333,12 @@ namespace Viscoplastic
     std::string complaint;
     if (Utilities::MPI::this_mpi_process(communicator) == 0)
       {
-        BinaryWriter archive;
+        std::ostringstream              bytes;
+        boost::archive::binary_oarchive archive(bytes);
         archive &magic_number<dim> &samples.t &cells &faces;
         try
           {
-            replace_file(file, archive.bytes());
+            replace_file(file, bytes.str());
           }
         catch (const std::exception &exception)
           {
@@ -358,12 +364,13 @@ namespace Viscoplastic
             if (const auto bytes = read_file_if_any(file))
               {
                 is_there = true;
-                BinaryReader archive(*bytes);
-                double       magic = 0.;
-                archive     &magic;
-                if (magic == magic_number<dim>)
+                std::istringstream              stream(*bytes);
+                boost::archive::binary_iarchive archive(stream);
+                double                          magic = 0.;
+                archive                        &magic;
+                is_good = magic == magic_number<dim>;
+                if (is_good)
                   archive &result.t &result.cells &result.faces;
-                is_good = magic == magic_number<dim> && archive.is_at_end();
               }
           }
         catch (const std::exception &)

@@ -104,7 +104,7 @@ namespace Viscoplastic
         checkpoints.make_directory();
         lock();
       }
-    const CheckpointStore::Removal removal = checkpoints.remove_all();
+    const CheckpointStore::Removal removal = checkpoints.remove_others(0, 0);
     for (const std::string &remark : removal.remarks)
       console.remark(remark);
     // Checkpoints of an earlier pass of this run are removed silently.
@@ -148,7 +148,7 @@ namespace Viscoplastic
           results_directory(parameters) + "statistics.csv", n));
     });
     output.emplace(run.scene, communicator);
-    output->resume(archive.output_times);
+    output->resume(archive.data.output_times);
     lines.open(directory(), n);
     // A run without regular checkpoints keeps the existing ones.
     const unsigned int n_kept = schedule.is_regular() ?
@@ -161,7 +161,7 @@ namespace Viscoplastic
                      << run.scene.unit(Quantity::time) << ") from '"
                      << checkpoints.path(n) << "'" << std::endl;
     archive.remark_on_changes(console);
-    run.recorder.resume(state, archive.earlier_seconds);
+    run.recorder.resume(state, archive.data.earlier_seconds);
   }
 
 

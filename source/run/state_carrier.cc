@@ -191,20 +191,11 @@ namespace Viscoplastic
     State<dim>                 &state = accepted.state;
     // The dofs coupled to a node on the primary side, thus ghosts, depend on
     // the stage.
-    for (DistributedVector *const field : {&state.u,
-                                           &state.velocity,
-                                           &state.initial_u,
-                                           &state.friction_work,
-                                           &state.carried_error_of_u,
-                                           &density})
+    for (DistributedVector *const field : nodal_fields(state))
       if (field->size() > 0)
-        {
-          DistributedVector owned = space.owned_vector();
-          for (std::size_t i = 0; i < space.owned.n_elements(); ++i)
-            owned.begin()[i] = (*field)(space.owned.nth_index_in_set(i));
-          *field = space.ghosted_vector();
-          *field = owned;
-        }
+        space.renew_ghosts(*field);
+    if (density.size() > 0)
+      space.renew_ghosts(density);
     DistributedVector old_u = space.owned_vector();
     space.to_frames(state.u, old_u);
     if (scene.has_unilateral_contact() ||

@@ -92,11 +92,9 @@ class Job:
         return Run(self.results, process)
 
     def steps(self):
-        return sorted(
-            int(path.name[5:])
-            for path in self.checkpoints.glob("step_*")
-            if path.name[5:].isdigit()
-        )
+        """Those of checkpoints that are finished, with a manifest."""
+        manifests = self.checkpoints.glob("step_*/manifest.txt")
+        return sorted(int(path.parent.name[5:]) for path in manifests)
 
     def step(self, n):
         return self.checkpoints / f"step_{n:06}"

@@ -19,7 +19,6 @@ import signal
 import subprocess
 import tempfile
 import time
-import zlib
 from pathlib import Path
 from unittest import mock
 
@@ -425,18 +424,17 @@ class Killed(RestartCase):
                 with JobOnDisk("slab_adaptive", self.OVERRIDES) as job:
                     process = job.start()
                     wanted = chance.randrange(2, 14)
-                    part = job.checkpoints / f"step_{wanted:06}.unfinished"
-                    while process.poll() is None and not part.exists():
+                    while process.poll() is None and not job.step(wanted).exists():
                         time.sleep(2e-4)
                     time.sleep(chance.uniform(0, 0.002))
                     process.send_signal(signal.SIGKILL)
                     process.communicate()
-                    n_parts += any(job.checkpoints.glob("*.unfinished"))
+                    n_parts += wanted not in job.steps()
                     job.run("--restart")
                     self.assertIdentical(
                         job.results, reference.results, f"kill {i} in step {wanted}"
                     )
-                    self.assertEqual(list(job.checkpoints.glob("*.unfinished")), [])
+                    self.assertEqual(len(list(job.checkpoints.iterdir())), 2)
         self.assertGreater(n_parts, 0)
 
     def test_again_and_again(self):
@@ -648,12 +646,12 @@ class OfSlab(RestartCase):
 class Damaged(OfSlab):
     """Checkpoints that are not what was written."""
 
-    def falls_back(self, damage):
+    def falls_back(self, damage, remark="Warning: the checkpoint.*step_000009"):
         with Job("slab_adaptive", self.reference.overrides, self.reference) as job:
             job.forget_after(9)
             damage(job.step(9))
             result = job.run("--restart")
-            self.assertRegex(result.stdout, "Warning: the checkpoint.*step_000009")
+            self.assertRegex(result.stdout, remark)
             self.assertRegex(result.stdout, "Restart after step 8 ")
             self.assertIdentical(job.results, self.reference.results)
 
@@ -674,15 +672,18 @@ class Damaged(OfSlab):
         self.falls_back(damage)
 
     def test_file_missing(self):
-        self.falls_back(lambda step: (step / "mesh_00000.bin").unlink())
+        self.falls_back(lambda step: (step / "run.bin").unlink())
 
     def test_manifest_missing(self):
-        self.falls_back(lambda step: (step / "manifest.txt").unlink())
+        """As in a checkpoint that the program was killed in."""
+        self.falls_back(
+            lambda step: (step / "manifest.txt").unlink(), "Restart after step 8 "
+        )
 
     def test_manifest_garbled(self):
         def damage(step):
             file = step / "manifest.txt"
-            file.write_text(file.read_text().replace("step 9", "step 8"))
+            file.write_text(file.read_text().replace('"step": 9', '"step": 8'))
 
         self.falls_back(damage)
 
@@ -690,7 +691,7 @@ class Damaged(OfSlab):
         def damage(step):
             file = step / "manifest.txt"
             text = file.read_text()
-            file.write_text(re.sub(r"checkpoint \d+", "checkpoint 3", text, count=1))
+            file.write_text(re.sub(r'checkpoint": \d+', 'checkpoint": 3', text))
 
         self.falls_back(damage)
 
@@ -721,16 +722,9 @@ class Damaged(OfSlab):
                 )
         file.write_bytes(content)
 
-    def refuses_or_is_right(self, job, what):
-        result = job.run("--restart", code=None)
-        self.assertIn(result.returncode, (0, 1), f"{what}: {result.stderr}")
-        if result.returncode == 1:
-            self.assertOneSentence(result.stderr)
-        return result
-
     def test_mutations_are_noticed(self):
         chance = random.Random(20004)
-        names = "manifest.txt", "run.bin", "mesh_00000.bin", "fields_00000.bin"
+        names = "manifest.txt", "run.bin", "fields_00000.bin"
         for i in range(N_MUTATIONS):
             with Job("slab_adaptive", self.reference.overrides, self.reference) as job:
                 job.forget_after(14)
@@ -741,26 +735,11 @@ class Damaged(OfSlab):
                 self.mutate(chance, job.step(14) / name)
                 if (job.step(14) / name).read_bytes() == before:
                     continue
-                result = self.refuses_or_is_right(job, f"mutation {i} of {name}")
-                self.assertEqual(result.returncode, 0)
-                self.assertIn("Restart after step 13 ", result.stdout)
+                result = job.run("--restart")
+                self.assertIn(
+                    "Restart after step 13 ", result.stdout, f"mutation {i} of {name}"
+                )
                 self.assertIdentical(job.results, self.reference.results)
-
-    def test_forgeries_do_no_harm(self):
-        """Mutations that have the right checksum: the program may take wrong
-        numbers for true, but it must not crash or hang on them."""
-        chance = random.Random(20005)
-        names = "manifest.txt", "run.bin", "mesh_00000.bin", "fields_00000.bin"
-        refused = 0
-        for i in range(2 * N_MUTATIONS):
-            with Job("slab_adaptive", self.reference.overrides, self.reference) as job:
-                job.forget_after(14)
-                name = chance.choice(names)
-                self.mutate(chance, job.step(14) / name)
-                forge(job.step(14))
-                result = self.refuses_or_is_right(job, f"forgery {i} of {name}")
-                refused += result.returncode
-        self.assertGreater(refused, N_MUTATIONS // 2)
 
     def test_statistics_that_lack_rows(self):
         with Job("slab_adaptive", self.reference.overrides, self.reference) as job:
@@ -778,22 +757,6 @@ class Damaged(OfSlab):
             file.write_text("\n".join(lines[:9] + [lines[9][:20]]))
             job.run("--restart")
             self.assertIdentical(job.results, self.reference.results)
-
-
-def forge(step):
-    """Give the manifest of a checkpoint the checksums that it should have."""
-    manifest = step / "manifest.txt"
-    lines = manifest.read_bytes().split(b"\n")
-    lines = [line for line in lines if line and not line.startswith(b"checksum")]
-    for i, line in enumerate(lines):
-        words = line.split()
-        file = step / words[1].decode(errors="replace") if len(words) > 1 else step
-        if words[:1] == [b"file"] and file.is_file():
-            content = file.read_bytes()
-            sizes = f" {len(content)} {zlib.crc32(content)}"
-            lines[i] = b"file " + words[1] + sizes.encode()
-    text = b"\n".join(lines) + b"\n"
-    manifest.write_bytes(text + f"checksum {zlib.crc32(text)}\n".encode())
 
 
 class Machine(RestartCase):
@@ -828,7 +791,7 @@ class Machine(RestartCase):
                 n = len(job.steps())
                 self.assertOneSentence(message, f"checkpoint of step {n + 1}", "large")
                 self.assertEqual(job.steps(), list(range(1, n + 1)))
-                self.assertEqual(list(job.checkpoints.glob("*.unfinished")), [])
+                self.assertEqual(len(list(job.checkpoints.iterdir())), n)
                 result = job.run("--restart")
                 self.assertIn(f"Restart after step {n} ", result.stdout)
                 self.assertIdentical(job.results, reference.results)
@@ -1014,9 +977,6 @@ class Begin(RestartCase):
 class Foreign(RestartCase):
     """Among checkpoints there may be what the program has not written."""
 
-    MANIFEST = "viscoplastic_contact checkpoint 4\n"
-    LIST = "viscoplastic_contact list of files 1\n"
-
     def add(self, job, files):
         """{"step_000001/thesis.txt": text}; None for a directory."""
         for name, text in files.items():
@@ -1037,8 +997,8 @@ class Foreign(RestartCase):
     def assertStays(self, result, directory, *files):
         self.assertRegex(
             result.stdout,
-            rf"Note: '\S*/{directory}' stays, since no manifest of this program "
-            rf"names {', '.join(files)} in it\.",
+            rf"Note: '\S*/{directory}/?' stays, since this program has not written "
+            rf"{', '.join(files)} in it\.",
         )
 
     def test_run_afresh(self):
@@ -1046,36 +1006,25 @@ class Foreign(RestartCase):
         foreign = {
             "step_000001/thesis.txt": "precious",
             "step_000007.outdated/b.txt": "",
-            "step_000007.outdated/c.txt": "",
-            "step_000020.unfinished/a.txt": "",
             "step_000030/manifest.txt": "of a ship",
             "step_1/a.txt": "",
             "step_000001.txt": "",
         }
-        # in any step: the directory of that name gives way
         for every in 0, 1:
             with Job("slab", {**SLAB, "Checkpoint/Every n steps": every}) as job:
                 self.add(job, foreign)
                 result = job.run()
                 self.assertNotIn("removed", result.stdout)
-                self.assertStays(result, "step_000001", "thesis.txt")
-                self.assertStays(result, "step_000007.outdated", "b.txt", "c.txt")
-                self.assertStays(result, "step_000020.unfinished", "a.txt")
-                self.assertStays(result, "step_000030", "manifest.txt")
                 expected = set(foreign)
                 if every == 1:
-                    expected.remove("step_000001/thesis.txt")
-                    expected.add("step_000001.outdated/thesis.txt")
-                    self.assertStays(result, "step_000001.outdated", "thesis.txt")
+                    self.assertStays(result, "step_000001", "thesis.txt")
                     for n in 15, 16:
-                        for name in "manifest.txt", "run.bin":
+                        for name in "manifest.txt", "run.bin", "fields_00000.bin":
                             expected.add(f"step_{n:06}/{name}")
-                        for name in "fields", "mesh":
-                            expected.add(f"step_{n:06}/{name}_00000.bin")
                 self.assertEqual(self.contents(job), sorted(expected))
 
     def test_inside_of_checkpoints(self):
-        """Only the files of the manifest go, and a restart leaves others, too."""
+        """Only files of the program go, and a restart leaves others, too."""
         with Job("slab", {**SLAB, **EVERY_STEP}) as job:
             job.run()
             for n in 4, 12:
@@ -1085,47 +1034,22 @@ class Foreign(RestartCase):
             result = job.run("--restart")
             self.assertIn("Restart after step 11 ", result.stdout)
             self.assertStays(result, "step_000012", "notes.txt")
-            self.assertEqual(
-                [path.name for path in job.step(12).with_suffix(".outdated").iterdir()],
-                ["notes.txt"],
-            )
             job.overrides["Checkpoint/Every n steps"] = 0
             result = job.run()
             self.assertRegex(result.stdout, "Note: the checkpoints.*removed")
             self.assertEqual(
-                self.contents(job),
-                ["step_000004/notes.txt", "step_000012.outdated/notes.txt"],
+                self.contents(job), ["step_000004/notes.txt", "step_000012/notes.txt"]
             )
 
     def test_remains_of_every_instant(self):
         """What the program leaves if it is killed while it writes or removes a
         checkpoint, at whatever instant, is its own, and goes."""
-        names = "fields_00000.bin", "mesh_00000.bin", "run.bin"
-        listed = "".join(f"file {name}\n" for name in (*names, "manifest.txt"))
-        manifest = self.MANIFEST + "".join(f"file {name} 1 2\n" for name in names)
-        remains = [
-            {},
-            {"unfinished.txt": ""},
-            {"unfinished.txt": self.LIST[:20]},
-            {"unfinished.txt": self.LIST},
-            {"unfinished.txt": self.LIST + listed[:30]},
-            {"unfinished.txt": self.LIST + listed, names[0]: ""},
-            {"unfinished.txt": self.LIST + listed, **dict.fromkeys(names, "x")},
-            {
-                "unfinished.txt": self.LIST + listed,
-                **dict.fromkeys(names, "x"),
-                "manifest.txt": manifest[:40],
-            },
-            {"manifest.txt": manifest, **dict.fromkeys(names, "x")},
-            {"manifest.txt": manifest, names[2]: "x"},
-            {"manifest.txt": manifest},
-        ]
+        names = "fields_00000.bin", "run.bin", "manifest.txt.part"
         with Job("slab", SLAB) as job:
-            for i, files in enumerate(remains):
-                for suffix in "", ".unfinished", ".outdated", ".unfinished_2":
-                    place = f"step_{i + 1:06}{suffix}"
-                    self.add(job, {place: None})
-                    self.add(job, {f"{place}/{name}": files[name] for name in files})
+            for i in range(len(names) + 1):
+                place = f"step_{i + 1:06}"
+                self.add(job, {place: None})
+                self.add(job, {f"{place}/{name}": "x" for name in names[:i]})
             result = job.run()
             self.assertNotIn("stays", result.stdout)
             self.assertEqual(list(job.checkpoints.iterdir()), [])

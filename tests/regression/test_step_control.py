@@ -28,7 +28,7 @@ def accepted_times(job):
     for manifest in job.checkpoints.glob("step_*/manifest*"):
         text = manifest.read_text(errors="replace")
         n = int(manifest.parent.name[5:])
-        times[n] = re.search(r"^time (\S+)", text, re.M).group(1)
+        times[n] = re.search(r'"time": (.*),', text).group(1)
     return [times[n] for n in sorted(times)]
 
 

@@ -4,7 +4,7 @@
 // however it has come about.
 
 #include "body.h"
-#include <viscoplastic_contact/checkpoint/checkpoint.h>
+#include <viscoplastic_contact/checkpoint/checkpoint_fields.h>
 #include <viscoplastic_contact/error/kelly_estimator.h>
 #include <viscoplastic_contact/mesh/cell_order.h>
 

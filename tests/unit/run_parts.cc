@@ -249,7 +249,7 @@ namespace
                             second.run,
                             second.triangulation);
     EXPECT_TRUE(archive.changes.allowed.empty());
-    EXPECT_EQ(archive.output_times, (std::vector<double>{0., 0.25}));
+    EXPECT_EQ(archive.data.output_times, (std::vector<double>{0., 0.25}));
     archive.read_fields(*second.discretization);
     const EvaluatedState<dim> &a = first.accepted, &b = second.accepted;
     EXPECT_EQ(a.state.n, b.state.n);

@@ -3,10 +3,11 @@
 
 #include <deal.II/base/utilities.h>
 
-#include <viscoplastic_contact/checkpoint/checkpoint_manifest.h>
-
 #include <mpi.h>
 
+#include <array>
+#include <cstdint>
+#include <functional>
 #include <map>
 #include <optional>
 #include <string>
@@ -14,19 +15,40 @@
 
 namespace Viscoplastic
 {
+  /// The description of a checkpoint, stored in its directory.
+  struct CheckpointManifest
+  {
+    /// Number and end time of the step after which the checkpoint was written.
+    unsigned int n       = 0;
+    double       t       = 0.;
+    unsigned int n_ranks = 0;
+    /// The version of the program.
+    std::string version;
+    /// Every parameter of the run, by `Section/Entry'.
+    std::map<std::string, std::string> parameters;
+    /// Size in bytes and checksum of each file by name.
+    std::map<std::string, std::array<std::uint64_t, 2>> files;
+
+    /// The text of manifest.txt, which contains a checksum of itself.
+    std::string
+    text() const;
+
+    /// Throws ExcMessage if the text is damaged or of another version.
+    static CheckpointManifest
+    of_text(const std::string &text);
+  };
+
+
+
   /// The checkpoints of a run: a directory with subdirectories, as
   /// `step_000012', each with any number of files and a manifest of their sizes
-  /// and checksums.
+  /// and checksums. The manifest is written last, in one go: without it a
+  /// checkpoint is unfinished. If the process is killed at any time, earlier
+  /// checkpoints are untouched.
   ///
-  /// Checkpoints are written atomically: into a directory of another name,
-  /// which is flushed to disk (fsync) and then renamed. If the process is
-  /// killed at any time, earlier checkpoints are untouched.
-  ///
-  /// Only files that the program has written are ever removed: those named by
-  /// the manifest of a checkpoint, or by the list that an unfinished one has
-  /// instead, and then the directory, if nothing else is in it. Functions that
-  /// remove something return a sentence for each directory that therefore
-  /// stays.
+  /// Only files that the program has written are ever removed, and then the
+  /// directory, if nothing else is in it. Functions that remove something
+  /// return a sentence for each directory that therefore stays.
   ///
   /// Member functions are collective; errors are ExcMessage on all ranks.
   class CheckpointStore
@@ -48,8 +70,8 @@ namespace Viscoplastic
     make_directory() const;
 
     /// Write the files of each rank (name to bytes) and a manifest of all
-    /// files, and remove all but the newest @p n_kept checkpoints. An existing
-    /// directory of that name is replaced, or renamed if it has other files.
+    /// files, and remove all but the newest @p n_kept checkpoints. A checkpoint
+    /// of the same step is replaced.
     std::vector<std::string>
     write(CheckpointManifest                        manifest,
           const std::map<std::string, std::string> &files_of_this_rank,
@@ -57,7 +79,7 @@ namespace Viscoplastic
 
     /// Return the newest checkpoint whose files are complete with correct
     /// checksums, if any; adds to @p remarks a sentence for each newer one that
-    /// is not.
+    /// is not. Those that are unfinished do not count.
     std::optional<CheckpointManifest>
     newest(std::vector<std::string> &remarks) const;
 
@@ -71,42 +93,22 @@ namespace Viscoplastic
       std::vector<std::string> remarks;
     };
 
-    /// Remove checkpoints after step @p n, unfinished ones, and all but the
-    /// newest @p n_kept (0: none is kept) up to step @p n: an interrupted run
-    /// may have more, since it removes old ones last. Counts complete
-    /// checkpoints after step @p n, or all if none is kept.
+    /// Remove all checkpoints but the newest @p n_kept up to step @p n, and
+    /// count those that had been finished.
     Removal
     remove_others(const unsigned int n, const unsigned int n_kept) const;
 
-    Removal
-    remove_all() const
-    {
-      return remove_others(0, 0);
-    }
-
   private:
-    /// A directory with the name of a checkpoint, valid or not.
-    struct Entry
-    {
-      std::string  path;
-      unsigned int n = 0;
-      /// False if the checkpoint is unfinished or being replaced.
-      bool is_complete = true;
-    };
+    /// Return the steps of the directories with names of checkpoints in
+    /// ascending order, and whether they are finished; none if there is no
+    /// directory. Throws ExcMessage if it cannot be read. Not collective.
+    std::map<unsigned int, bool>
+    steps() const;
 
-    /// Return all entries by ascending step; none if there is no directory.
-    /// Throws ExcMessage if it cannot be read. Not collective.
-    std::vector<Entry>
-    entries() const;
-
-    /// Remove all but the newest @p n_kept (at least one) checkpoints up to
-    /// step @p n, which exists. Not collective.
+    /// Do the work on rank 0; throw its exceptions on all ranks.
     void
-    remove_before(const unsigned int        n,
-                  const unsigned int        n_kept,
-                  std::vector<std::string> &remarks) const;
+    on_root(const std::function<void()> &work) const;
 
-    const MPI_Comm     communicator;
-    const unsigned int rank, n_ranks;
+    const MPI_Comm communicator;
   };
 } // namespace Viscoplastic

@@ -3,7 +3,7 @@
 
 #include <deal.II/distributed/tria.h>
 
-#include <viscoplastic_contact/checkpoint/checkpoint.h>
+#include <viscoplastic_contact/checkpoint/checkpoint_fields.h>
 #include <viscoplastic_contact/checkpoint/checkpoint_store.h>
 #include <viscoplastic_contact/error/error_budget.h>
 #include <viscoplastic_contact/results/recorder.h>
@@ -64,6 +64,22 @@ namespace Viscoplastic
            const TimeStepper<dim>                          &time_stepper,
            const std::vector<double>                       &output_times);
 
+  /// What a checkpoint has besides the state and the members of RunState.
+  struct ArchivedData
+  {
+    /// The results of pack_mesh() by rank.
+    std::vector<std::vector<unsigned int>> meshes;
+    /// Which fields were present, of the state and of the quantity of interest,
+    /// and whether there was an estimate of the error of the mesh.
+    std::array<std::vector<bool>, 2> fields;
+    bool                             has_estimate = false;
+    /// Whether the state solves the step that it ends.
+    bool is_solution = false;
+    /// The times of the fields written, and the seconds that the run had taken.
+    std::vector<double> output_times;
+    double              earlier_seconds = 0.;
+  };
+
   /// A checkpoint from which a run continues. It is read in two parts, since
   /// fields need a discretization, which needs the mesh. Errors are ExcMessage
   /// with a sentence for the user. Collective.
@@ -90,22 +106,17 @@ namespace Viscoplastic
 
     /// Parameters that have changed since the checkpoint was written.
     const ParameterChanges changes;
-    /// The times of the fields written, and the seconds that the run had taken.
-    std::vector<double> output_times;
-    double              earlier_seconds = 0.;
+    ArchivedData           data;
 
   private:
-    /// Whether the state solves the step that it ends.
-    bool                      is_solution = false;
+    /// Return the values of the owned cells from the files of this kind.
+    CellValues
+    read_cells(const std::string          &kind,
+               const AdmissibleSpace<dim> &space) const;
+
     const CheckpointStore    &store;
     const CheckpointManifest &checkpoint;
     RunState<dim>            &run;
-
-    std::vector<std::string> meshes; // by rank of the checkpoint
-    std::array<bool, 5>      has_nodal_field;
-    bool                     has_estimate       = false;
-    bool                     has_bytes_to_spare = false;
-    StepperMemory<dim>       memory;
-    std::array<bool, 5>      has_field_of_quantity{};
+    StepperMemory<dim>        memory;
   };
 } // namespace Viscoplastic

@@ -174,6 +174,10 @@ namespace Viscoplastic
       return DistributedVector(owned, relevant, communicator);
     }
 
+    /// Give a vector that has the owned entries the ghosts of this space.
+    void
+    renew_ghosts(DistributedVector &vector) const;
+
     /// Add @p cartesian, sums over the owned cells in the order of `relevant`,
     /// to a load vector in frames, including the shares of hanging nodes.
     /// Changes @p cartesian; collective.

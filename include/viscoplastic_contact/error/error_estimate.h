@@ -52,7 +52,7 @@ namespace Viscoplastic
     /// Write to, or read from, an archive.
     template <typename Archive>
     void
-    exchange(Archive &archive)
+    serialize(Archive &archive, const unsigned int)
     {
       archive &space &history &time &friction &transfer &algebraic &initial
         &history_adds;
@@ -96,9 +96,9 @@ namespace Viscoplastic
     /// Write to, or read from, an archive.
     template <typename Archive>
     void
-    exchange(Archive &archive)
+    serialize(Archive &archive, const unsigned int)
     {
-      ErrorParts::exchange(archive);
+      ErrorParts::serialize(archive, 0);
       archive &value &space_correction &time_correction &settled_space
         &settled_time &slip_work &rest_space &unsigned_space &space_at_least
           &of_sides &of_boundary &turning &resting &dual_norm &dual_error;
@@ -148,11 +148,10 @@ namespace Viscoplastic
     /// which each step sets anew.
     template <typename Archive>
     void
-    exchange(Archive &archive)
+    serialize(Archive &archive, const unsigned int)
     {
-      ErrorParts::exchange(archive);
-      quantity.exchange(archive);
-      archive &swing &swing_share &time_indicator &velocity_variation
+      ErrorParts::serialize(archive, 0);
+      archive &quantity &swing &swing_share &time_indicator &velocity_variation
         &energy_norm &velocity_square &creep_path &since_estimate &slip_begun;
     }
   };
@@ -191,10 +190,9 @@ namespace Viscoplastic
     /// Write to, or read from, an archive.
     template <typename Archive>
     void
-    exchange(Archive &archive)
+    serialize(Archive &archive, const unsigned int)
     {
-      largest.exchange(archive);
-      archive &t &size;
+      archive &largest &t &size;
     }
   };
 } // namespace Viscoplastic

@@ -37,12 +37,10 @@ namespace Viscoplastic
 
     template <typename Archive>
     void
-    exchange(Archive &archive)
+    serialize(Archive &archive, const unsigned int)
     {
-      std::vector<types::boundary_id> ids(loads.begin(), loads.end());
-      archive &ids &mesh_has_changed &has_bound &foundation_has_moved
+      archive &loads &mesh_has_changed &has_bound &foundation_has_moved
         &has_touched &has_opened &closes_between_nodes;
-      loads = {ids.begin(), ids.end()};
     }
 
   private:

@@ -115,7 +115,7 @@ namespace Viscoplastic
 
     template <typename Archive>
     void
-    exchange(Archive &archive)
+    serialize(Archive &archive, const unsigned int)
     {
       archive &initial_energy &stored_energy &external_work &largest_work
         &viscous_dissipation &friction_dissipation &adaptation_energy

@@ -16,6 +16,9 @@
 #include <viscoplastic_contact/results/statistics.h>
 #include <viscoplastic_contact/results/step_quantities.h>
 
+#include <boost/serialization/set.hpp>
+#include <boost/serialization/vector.hpp>
+
 #include <memory>
 
 namespace Viscoplastic
@@ -171,7 +174,7 @@ namespace Viscoplastic
     /// Write or read the data that accumulate over the run.
     template <typename Archive>
     void
-    exchange(Archive &archive);
+    serialize(Archive &archive, const unsigned int);
 
   private:
     /// Return why, and by how much, the tolerance of the run has been missed.
@@ -272,15 +275,12 @@ namespace Viscoplastic
   template <int dim>
   template <typename Archive>
   void
-  Recorder<dim>::exchange(Archive &archive)
+  Recorder<dim>::serialize(Archive &archive, const unsigned int)
   {
-    balance.exchange(archive);
-    archive &largest_force &contact_iterations &linear_iterations
-      &newton_iterations &implicit_steps;
-    archive              &run.unchanged_steps;
-    if (!scene.output_integrals.empty())
-      archive &dissipated;
-    effects.exchange(archive);
+    archive &balance &largest_force &contact_iterations &linear_iterations
+      &newton_iterations &implicit_steps &dissipated &effects;
+    archive &run.unchanged_steps &run.first_touch &run.first_slip &run
+      .friction_area &run.missed_bounds &run.computed_bounds;
     for (Largest *largest : {&run.displacement,
                              &run.strain,
                              &run.von_mises,
@@ -293,28 +293,12 @@ namespace Viscoplastic
                              &run.utilization,
                              &run.stiffness})
       archive & largest->value & largest->t;
-    run.first_touch.exchange(archive);
-    run.first_slip.exchange(archive);
-    archive &run.friction_area &run.missed_bounds &run.computed_bounds;
-    for (unsigned int d = 0; d < dim; ++d)
-      archive &run.critical_position[d] & run.displacement_position[d] &
-        run.von_mises_position[d];
+    archive &run.critical_position &run.displacement_position &run
+      .von_mises_position;
     for (SolutionNorms *norms : {&run.largest_error, &run.largest_exact})
       archive & norms->energy & norms->h1 & norms->stress & norms->multiplier;
     if (run.errors)
-      {
-        run.errors->exchange(archive);
-        run.quantity_errors.exchange(archive);
-        archive &run.has_coarse_curves;
-      }
-    std::vector<char> doubts;
-    for (const std::string &doubt : run.doubtful_steps)
-      {
-        doubts.insert(doubts.end(), doubt.begin(), doubt.end());
-        doubts.push_back('\n');
-      }
-    archive &doubts;
-    run.doubtful_steps =
-      Utilities::split_string_list({doubts.begin(), doubts.end()}, '\n');
+      archive &*run.errors &run.quantity_errors &run.has_coarse_curves;
+    archive &run.doubtful_steps;
   }
 } // namespace Viscoplastic

@@ -99,7 +99,7 @@ namespace Viscoplastic
 
     template <typename Archive>
     void
-    exchange(Archive &archive)
+    serialize(Archive &archive, const unsigned int)
     {
       archive &n &before &t &is_over;
     }

@@ -240,7 +240,7 @@ namespace Viscoplastic
 
     template <typename Archive>
     void
-    exchange(Archive &archive)
+    serialize(Archive &archive, const unsigned int)
     {
       archive &present.wanted &present.last_ratio &present.size &present
         .was_rejected &present.event_before &present.unsigned_sum;

@@ -113,18 +113,14 @@ namespace Viscoplastic
   namespace
   {
     /// The owned cells in the order of p4est, as indices of
-    /// AdmissibleSpace::cells.
+    /// AdmissibleSpace::cells, in which coarse cells stand in another order.
     template <int dim>
     std::vector<std::size_t>
     order_of_p4est(const AdmissibleSpace<dim> &space)
     {
-      const auto &tree =
-        dynamic_cast<const parallel::distributed::Triangulation<dim> &>(
-          space.dof_handler.get_triangulation())
-          .get_coarse_cell_to_p4est_tree_permutation();
-      std::multimap<types::global_dof_index, std::size_t> by_tree;
+      std::multimap<types::coarse_cell_id, std::size_t> by_tree;
       for (std::size_t i = 0; i < space.cells.size(); ++i)
-        by_tree.emplace(tree[space.cells[i]->id().get_coarse_cell_id()], i);
+        by_tree.emplace(space.cells[i]->id().get_coarse_cell_id(), i);
       std::vector<std::size_t> result;
       for (const auto &entry : by_tree)
         result.push_back(entry.second);

@@ -129,47 +129,6 @@ namespace Viscoplastic
 
 
   template <int dim>
-  std::vector<std::string>
-  BodyFields<dim>::names(const std::set<RecordedField> &fields)
-  {
-    using Field = RecordedField;
-    // Names of columns and tensor ranks.
-    static const std::map<Field, std::pair<std::string, unsigned int>> columns{
-      {Field::displacement, {"displacement", 1}},
-      {Field::velocity, {"velocity", 1}},
-      {Field::stress, {"stress", 2}},
-      {Field::von_mises_stress, {"von_mises", 0}},
-      {Field::irreversible_stress, {"irreversible_stress", 2}},
-      {Field::total_strain, {"strain", 2}},
-      {Field::irreversible_strain, {"irreversible_strain", 2}},
-      {Field::creep_strain, {"creep_strain", 0}},
-      {Field::creep_rate, {"creep_rate", 0}},
-      {Field::history, {"history", 2}},
-      {Field::temperature, {"temperature", 0}}};
-    const std::string        xyz = "xyz";
-    std::vector<std::string> result;
-    for (const Field field : fields)
-      if (field == Field::principal_stresses)
-        for (const char *number : {"1", "2", "3"})
-          result.push_back(std::string("principal_stress_") + number);
-      else if (!is_of_boundary(field))
-        {
-          const auto &[name, rank] = columns.at(field);
-          if (rank == 0)
-            result.push_back(name);
-          else if (rank == 1)
-            for (unsigned int d = 0; d < dim; ++d)
-              result.push_back(name + "_" + xyz[d]);
-          else
-            for (const auto &[i, j] : stress_components<dim>())
-              result.push_back(name + "_" + xyz[i] + xyz[j]);
-        }
-    return result;
-  }
-
-
-
-  template <int dim>
   void
   BodyFields<dim>::add(const std::size_t         cell,
                        const VertexWeights<dim> &weights,

@@ -2,6 +2,7 @@
 #include <viscoplastic_contact/base/number_range.h>
 #include <viscoplastic_contact/discretization/held_traction.h>
 #include <viscoplastic_contact/results/boundary_fields.h>
+#include <viscoplastic_contact/results/unit_labels.h>
 
 namespace Viscoplastic
 {
@@ -30,55 +31,57 @@ namespace Viscoplastic
   void
   BoundaryFields<dim>::make_fields(const ContactFace<dim> *face)
   {
-    if (has(RecordedField::friction_work))
-      friction_work = state.friction_work;
-    if (has(RecordedField::slip))
+    for (const RecordedField field : fields)
+      if (field == RecordedField::friction_work)
+        nodal[field] = state.friction_work;
+      else if (field == RecordedField::slip ||
+               field == RecordedField::slip_rate)
+        {
+          DistributedVector &motion = nodal[field];
+          motion = field == RecordedField::slip ? state.u : state.velocity;
+          if (field == RecordedField::slip && state.initial_u.size() > 0)
+            for (std::size_t i = 0;
+                 i < stress_space.space.relevant.n_elements();
+                 ++i)
+              motion.begin()[i] -= state.initial_u.begin()[i];
+          stress_space.space.make_relative(motion);
+        }
+      else if (field == RecordedField::traction && face)
+        nodal[field] = face->density(state.contact,
+                                     /* of_friction_alone = */ true);
+      else if (is_of_contact(field) && face)
+        {
+          std::vector<double> values;
+          for (unsigned int p = 0; p < state.contact.n_points(); ++p)
+            values.push_back(value_at_point(field, *face, p));
+          nodal[field] =
+            face->nodal_field(values, is_of_unilateral_contact(field));
+        }
+  }
+
+
+
+  template <int dim>
+  double
+  BoundaryFields<dim>::value_at_point(const RecordedField     field,
+                                      const ContactFace<dim> &face,
+                                      const unsigned int      p) const
+  {
+    const ContactState &contact = state.contact;
+    const double        bound   = contact.bound[p];
+    switch (field)
       {
-        slip = state.u;
-        if (state.initial_u.size() > 0)
-          for (std::size_t i = 0; i < stress_space.space.relevant.n_elements();
-               ++i)
-            slip.begin()[i] -= state.initial_u.begin()[i];
-        stress_space.space.make_relative(slip);
+        case RecordedField::bound:
+          return bound / face.weights()[p];
+        case RecordedField::utilization:
+          return bound > 0. ? stable_norm(contact.multiplier[p]) / bound : 0.;
+        case RecordedField::stick: // that of nodes without points is 1
+          return contact.sticks[p] ? 0. : 1.;
+        case RecordedField::contact_pressure:
+          return contact.multiplier[p][0] / face.weights()[p];
+        default: // the gap
+          return bound - contact.slip[p][0];
       }
-    if (has(RecordedField::slip_rate))
-      {
-        slip_rate = state.velocity;
-        stress_space.space.make_relative(slip_rate);
-      }
-    if (face == nullptr)
-      return;
-    const ContactState        &contact = state.contact;
-    const std::vector<double> &bounds  = contact.bound;
-    const auto nodal = [&](const bool of_obstacles, const auto &value) {
-      std::vector<double> values(bounds.size());
-      for (unsigned int p = 0; p < values.size(); ++p)
-        values[p] = value(p);
-      return face->nodal_field(values, of_obstacles);
-    };
-    if (has(RecordedField::traction))
-      density = face->density(contact, /* of_friction_alone = */ true);
-    if (has(RecordedField::bound))
-      bound = nodal(false, [&](const unsigned int p) {
-        return bounds[p] / face->weights()[p];
-      });
-    if (has(RecordedField::utilization))
-      utilization = nodal(false, [&](const unsigned int p) {
-        return bounds[p] > 0. ? stable_norm(contact.multiplier[p]) / bounds[p] :
-                                0.;
-      });
-    if (has(RecordedField::stick))
-      slipping = nodal(false, [&](const unsigned int p) {
-        return contact.sticks[p] ? 0. : 1.;
-      });
-    if (has(RecordedField::contact_pressure))
-      pressure = nodal(true, [&](const unsigned int p) {
-        return contact.multiplier[p][0] / face->weights()[p];
-      });
-    if (has(RecordedField::gap))
-      gap = nodal(true, [&](const unsigned int p) {
-        return bounds[p] - contact.slip[p][0];
-      });
   }
 
 
@@ -112,20 +115,12 @@ namespace Viscoplastic
       weights(q) += weight;
     });
     weights.compress(VectorOperation::add);
-    for (const auto &[field, sign] : {std::make_pair(&slip, -1.),
-                                      {&slip_rate, -1.},
-                                      {&bound, 1.},
-                                      {&utilization, 1.},
-                                      {&slipping, 1.},
-                                      {&pressure, 1.},
-                                      {&gap, 1.},
-                                      {&friction_work, 1.}})
+    for (auto &[field, values] : nodal)
       {
-        if (field->size() == 0)
+        if (values.size() == 0 || field == RecordedField::traction)
           continue;
-        sums                            = 0.;
-        const double             factor = sign;
-        const DistributedVector &values = *field;
+        sums                = 0.;
+        const double factor = column_of(field).rank == 1 ? -1. : 1.;
         visit([&](const auto p, const auto q, const double weight) {
           for (unsigned int d = 0; d < dim; ++d)
             sums(q + d) +=
@@ -134,7 +129,7 @@ namespace Viscoplastic
         });
         sums.compress(VectorOperation::add);
         // Primary nodes without opposite nodes do not stick.
-        const double      elsewhere = field == &slipping ? 1. : 0.;
+        const double      elsewhere = field == RecordedField::stick ? 1. : 0.;
         DistributedVector result    = space.owned_vector();
         for (std::size_t i = 0; i < space.owned.n_elements(); ++i)
           {
@@ -148,7 +143,7 @@ namespace Viscoplastic
                 elsewhere;
           }
         space.distribute_hanging_nodes(result);
-        *field = result;
+        values = result;
       }
   }
 
@@ -176,22 +171,6 @@ namespace Viscoplastic
       }
     if (asked.count(RecordedField::normal_traction) == 1)
       result.insert(RecordedField::normal_traction);
-    return result;
-  }
-
-
-
-  template <int dim>
-  std::vector<std::string>
-  BoundaryFields<dim>::names(const std::set<RecordedField> &fields)
-  {
-    std::vector<std::string> result;
-    for (const RecordedField field : fields)
-      if (is_vector(field))
-        for (unsigned int d = 0; d < dim; ++d)
-          result.push_back(name(field) + "_" + "xyz"[d]);
-      else if (is_of_boundary(field))
-        result.push_back(name(field));
     return result;
   }
 
@@ -231,16 +210,13 @@ namespace Viscoplastic
     const Tensor<1, dim> normal    = condition.normal_varies ?
                                        space.normal_at(first_dof, condition) :
                                        normal_of_face;
-    const auto           vector    = [&](const DistributedVector &field) {
-      Tensor<1, dim> value;
-      for (unsigned int d = 0; d < dim; ++d)
-        value[d] = field.begin()[node + d];
-      return value;
-    };
-    const auto scalar = [&](const DistributedVector &field) {
-      return condition.has_friction() && field.size() > 0 ?
-               field.begin()[node] :
-               0.;
+    const auto           value     = [&](const RecordedField field) {
+      Tensor<1, dim> result;
+      const auto     found = nodal.find(field);
+      if (found != nodal.end() && found->second.size() > 0)
+        for (unsigned int d = 0; d < dim; ++d)
+          result[d] = found->second.begin()[node + d];
+      return result;
     };
 
     std::vector<double> result;
@@ -252,12 +228,12 @@ namespace Viscoplastic
       switch (field)
         {
           case RecordedField::slip:
-            append(tangential(vector(slip), normal) -
+            append(tangential(value(field), normal) -
                    condition.sliding(cell->vertex(v), state.t));
             break;
           case RecordedField::slip_rate:
             {
-              Tensor<1, dim> rate = tangential(vector(slip_rate), normal);
+              Tensor<1, dim> rate = tangential(value(field), normal);
               if (state.k > 0. && condition.foundation_motion)
                 rate -=
                   (condition.sliding(cell->vertex(v), state.t) -
@@ -268,33 +244,14 @@ namespace Viscoplastic
             }
           case RecordedField::traction:
             // The traction on the body is minus the multiplier.
-            append(condition.has_friction() && density.size() > 0 ?
-                     -1. * tangential(vector(density),
+            append(condition.has_friction() ?
+                     -1. * tangential(value(field),
                                       space.normal_at(first_dof, condition)) :
                      Tensor<1, dim>());
             break;
-          case RecordedField::bound:
-            result.push_back(scalar(bound));
-            break;
-          case RecordedField::utilization:
-            result.push_back(scalar(utilization));
-            break;
           case RecordedField::stick:
-            result.push_back(condition.has_friction() ? 1. - scalar(slipping) :
+            result.push_back(condition.has_friction() ? 1. - value(field)[0] :
                                                         0.);
-            break;
-          case RecordedField::contact_pressure:
-          case RecordedField::gap:
-            {
-              const DistributedVector &of =
-                field == RecordedField::gap ? gap : pressure;
-              result.push_back(condition.is_unilateral() && of.size() > 0 ?
-                                 of.begin()[node] :
-                                 0.);
-              break;
-            }
-          case RecordedField::friction_work:
-            result.push_back(scalar(friction_work));
             break;
           case RecordedField::normal_traction:
             result.push_back(stress_vector(c, normal) * normal);
@@ -303,7 +260,11 @@ namespace Viscoplastic
             append(stress_vector(c, normal));
             break;
           default:
-            Assert(false, ExcInternalError());
+            result.push_back((is_of_friction(field) ?
+                                condition.has_friction() :
+                                condition.is_unilateral()) ?
+                               value(field)[0] :
+                               0.);
         }
     return result;
   }

@@ -3,7 +3,6 @@
 
 #include <viscoplastic_contact/discretization/energy.h>
 #include <viscoplastic_contact/results/field_probes.h>
-#include <viscoplastic_contact/results/unit_labels.h>
 
 namespace Viscoplastic
 {
@@ -45,8 +44,8 @@ namespace Viscoplastic
                                 const std::set<RecordedField> &fields)
     : discretization(discretization)
     , fields(fields)
-    , all_names(BodyFields<dim>::names(fields))
-    , n_body(all_names.size())
+    , all_columns(columns_of<dim>(fields, false))
+    , n_body(all_columns.size())
     , is_on_face(points.size(), false)
   {
     const Triangulation<dim> &mesh =
@@ -70,10 +69,12 @@ namespace Viscoplastic
           if (is_absent[i] > 0)
             absent_points.push_back(i);
       }
-    const auto of_boundary = BoundaryFields<dim>::names(fields);
+    const auto of_boundary = columns_of<dim>(fields, true);
     if (of_boundary.empty())
       return;
-    all_names.insert(all_names.end(), of_boundary.begin(), of_boundary.end());
+    all_columns.insert(all_columns.end(),
+                       of_boundary.begin(),
+                       of_boundary.end());
     const PointLocations<dim> found =
       locate_on_boundary(mesh,
                          points,
@@ -90,7 +91,7 @@ namespace Viscoplastic
   FieldProbes<dim>::values(const State<dim> &state) const
   {
     const AdmissibleSpace<dim> &space   = discretization.space;
-    const std::size_t           n_names = all_names.size();
+    const std::size_t           n_names = all_columns.size();
     std::vector<double>         result(in_body.size() * n_names, 0.);
     {
       const BodyFields<dim> body(discretization.laws, state, fields);
@@ -150,11 +151,11 @@ namespace Viscoplastic
         };
         add((is_boundary ? "area_" : "volume_") + integral.name(),
             is_boundary ? Quantity::area : Quantity::volume);
-        for (const auto &names : {BodyFields<dim>::names(integral.fields),
-                                  BoundaryFields<dim>::names(integral.fields)})
-          for (const std::string &name : names)
-            add("integral_" + integral.name() + "_" + name,
-                integrated(quantity_of_field(name), is_boundary));
+        for (const bool of_boundary : {false, true})
+          for (const FieldColumn &column :
+               columns_of<dim>(integral.fields, of_boundary))
+            add("integral_" + integral.name() + "_" + column.name,
+                integrated(column.quantity, is_boundary));
         if (!integral.energies)
           continue;
         add("stored_energy_" + integral.name(), Quantity::energy);
@@ -284,7 +285,7 @@ namespace Viscoplastic
                                            state,
                                            discretization.face.get(),
                                            fields);
-        const std::size_t n_body = BodyFields<dim>::names(fields).size();
+        const std::size_t n_body = columns_of<dim>(fields, false).size();
         for (const Piece &piece : pieces[i])
           {
             for (const double weight : piece.weights)
@@ -296,7 +297,7 @@ namespace Viscoplastic
                          piece.normal,
                          sums + 1 + n_body);
           }
-        sums += 1 + n_body + BoundaryFields<dim>::names(fields).size();
+        sums += 1 + n_body + columns_of<dim>(fields, true).size();
         if (integral.energies)
           for (const double energy : energies(pieces[i], old, state))
             *sums++ = energy;

@@ -27,7 +27,8 @@ namespace Viscoplastic
     std::string   name;
     std::uint64_t n_columns, first_row, n_rows;
     std::variant<std::vector<float>, std::vector<types::global_dof_index>>
-      values;
+                values;
+    std::string label = {}; // of the unit
 
     bool
     operator==(const DataSet &other) const
@@ -88,18 +89,21 @@ namespace Viscoplastic
     {
       const AdmissibleSpace<dim> &space = body.space;
       std::vector<DataSet>        result;
-      const auto add = [&](const std::string &name, const bool is_vector) {
-        const DataSet &rows = mesh[is_vector ? 0 : 1];
-        result.push_back({name,
-                          is_vector ? 3u : 1u,
-                          rows.first_row,
-                          rows.n_rows,
-                          std::vector<float>()});
+      const auto                  add = [&](const FieldColumn &column) {
+        const bool     is_vector = column.rank == 1;
+        const DataSet &rows      = mesh[is_vector ? 0 : 1];
+        result.push_back(
+          {column.name,
+           is_vector ? 3u : 1u,
+           rows.first_row,
+           rows.n_rows,
+           std::vector<float>(),
+           space.scene.parameters.units.label(column.quantity, dim)});
         return &std::get<0>(result.back().values);
       };
-      for (const auto &[name, field] : body.vectors)
+      for (const auto &[column, field] : body.vectors)
         {
-          std::vector<float> *const values = add(name, true);
+          std::vector<float> *const values = add(column);
           for (const auto dof : space.dof_handler.locally_owned_dofs())
             {
               values->push_back(
@@ -108,10 +112,8 @@ namespace Viscoplastic
                 values->push_back(0.f);
             }
         }
-      for (const auto &[name, means] : body.means)
-        {
-          *add(name, false) = means;
-        }
+      for (const auto &[column, means] : body.means)
+        *add(column) = means;
       return result;
     }
 
@@ -265,7 +267,7 @@ namespace Viscoplastic
 
 
   template <int dim>
-  std::string
+  void
   Output<dim>::write_in_hdf5(const BodyData<dim> &body, const double t)
   {
     using DataSets = std::vector<DataSet>;
@@ -273,13 +275,6 @@ namespace Viscoplastic
     H5open();
     const auto mesh_now = std::make_shared<DataSets>(mesh_of(body));
     const auto fields = std::make_shared<DataSets>(fields_of(body, *mesh_now));
-    std::set<unsigned int> beyond_range;
-    for (unsigned int i = 0; i <= fields->size(); ++i)
-      for (float &value : std::get<0>(
-             (i < fields->size() ? (*fields)[i] : (*mesh_now)[0]).values))
-        if (cut_off(value))
-          beyond_range.insert(i);
-
     const std::string record = record_name("solution", times.size() - 1);
     const bool        is_new =
       Utilities::MPI::logical_or(mesh == nullptr || *mesh != *mesh_now,
@@ -304,18 +299,14 @@ namespace Viscoplastic
                     dim == 2 ? "GeometryType=\"XY\"" : "GeometryType=\"XYZ\"",
                     mesh_file,
                     (*mesh)[0]);
-    std::vector<std::string> names;
     for (const DataSet &field : *fields)
-      {
-        names.push_back(field.name + label_of_field(scene, field.name));
-        grid << element("Attribute",
-                        "Name=\"" + names.back() +
-                          (field.n_columns == 3 ?
-                             "\" AttributeType=\"Vector\" Center=\"Node\"" :
-                             "\" AttributeType=\"Scalar\" Center=\"Cell\""),
-                        record + ".h5",
-                        field);
-      }
+      grid << element("Attribute",
+                      "Name=\"" + field.name + field.label +
+                        (field.n_columns == 3 ?
+                           "\" AttributeType=\"Vector\" Center=\"Node\"" :
+                           "\" AttributeType=\"Scalar\" Center=\"Cell\""),
+                      record + ".h5",
+                      field);
     grid << "</Grid>\n";
 
     std::optional<MPI_Comm> ranks;
@@ -339,7 +330,6 @@ namespace Viscoplastic
         replace_file(name + ".xml", grid);
         replace_file(of_series.first, of_series.second);
       });
-    return remark_on_range(record + ".h5", names, beyond_range);
   }
 
 

@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <viscoplastic_contact/base/files.h>
 #include <viscoplastic_contact/base/messages.h>
 #include <viscoplastic_contact/results/line_output.h>
-#include <viscoplastic_contact/results/statistics.h>
-#include <viscoplastic_contact/results/unit_labels.h>
 
 #include <iomanip>
+#include <sstream>
 
 namespace Viscoplastic
 {
@@ -33,25 +31,13 @@ namespace Viscoplastic
                         const std::optional<unsigned int> &last_step)
   {
     const MPI_Comm communicator = discretization->space.communicator;
-    names.clear();
     files.clear();
-    if (Utilities::MPI::this_mpi_process(communicator) == 0)
-      for (std::size_t i = 0; i < scene.output_lines.size(); ++i)
-        names.push_back(directory + line_file_name(i));
     fail_together(communicator, [&] {
-      std::vector<TableBeginning> beginnings;
-      for (const std::string &name : names)
-        if (last_step)
-          beginnings.push_back(beginning_of_table(name, *last_step));
-        else
-          require_writable_file(name);
-      for (std::size_t i = 0; i < names.size(); ++i)
-        {
-          files.push_back(last_step ? append_to_table(names[i], beginnings[i]) :
-                                      std::ofstream(names[i]));
-          if (!files.back())
-            refuse("The file '" + names[i] + "' cannot be written.");
-        }
+      if (Utilities::MPI::this_mpi_process(communicator) == 0)
+        for (std::size_t i = 0; i < scene.output_lines.size(); ++i)
+          files.push_back(
+            std::make_unique<TableFile>(directory + line_file_name(i),
+                                        last_step));
     });
   }
 
@@ -75,8 +61,8 @@ namespace Viscoplastic
         fail_together(discretization->space.communicator, [&] {
           if (files.empty())
             return;
-          std::ofstream                  &file    = files[i];
-          const std::vector<std::string> &columns = probes[i]->names();
+          std::ostringstream              file;
+          const std::vector<FieldColumn> &columns = probes[i]->columns();
           if (state.n == 0)
             {
               const Units      &units  = scene.parameters.units;
@@ -85,8 +71,8 @@ namespace Viscoplastic
                    << length;
               for (unsigned int d = 0; d < dim; ++d)
                 file << ',' << "xyz"[d] << length;
-              for (const std::string &column : columns)
-                file << ',' << column << label_of_field(scene, column);
+              for (const FieldColumn &column : columns)
+                file << ',' << column.name << units.label(column.quantity, dim);
               file << '\n';
             }
           file << std::setprecision(12);
@@ -102,9 +88,7 @@ namespace Viscoplastic
                 file << ',' << *value++;
               file << '\n';
             }
-          file << std::flush;
-          if (!file)
-            refuse("Writing to '" + names[i] + "' failed; is the disk full?");
+          files[i]->write(file.str());
         });
       }
   }
@@ -115,9 +99,8 @@ namespace Viscoplastic
   void
   LineOutput<dim>::synchronize()
   {
-    // The streams have been flushed by write().
-    for (const std::string &name : names)
-      Viscoplastic::synchronize(name);
+    for (const auto &file : files)
+      file->synchronize();
   }
 
 

@@ -71,7 +71,7 @@ namespace Viscoplastic
 
 
   template <int dim>
-  std::vector<std::string>
+  void
   Output<dim>::write_fields(const FlowLaws<dim>    &laws,
                             const State<dim>       &state,
                             const ContactFace<dim> *face,
@@ -81,17 +81,12 @@ namespace Viscoplastic
     times.push_back(state.t);
     if (times.size() == 1)
       write_boundary(laws.stress_space.space);
-    std::vector<std::string> remarks{write_body(laws, state, squared_estimate)};
+    write_body(laws, state, squared_estimate);
     if (scene.has_contact())
-      remarks.push_back(
-        write_contact("contact", laws.stress_space, state, face));
+      write_contact("contact", laws.stress_space, state, face);
     if (scene.has_contact_pairs())
-      remarks.push_back(
-        write_contact("opposite", laws.stress_space, state, face));
+      write_contact("opposite", laws.stress_space, state, face);
     write_in_background();
-    remarks.erase(std::remove(remarks.begin(), remarks.end(), ""),
-                  remarks.end());
-    return remarks;
   }
 
 
@@ -134,18 +129,11 @@ namespace Viscoplastic
 
   template <int dim>
   template <typename Data>
-  std::string
+  void
   Output<dim>::write_vtu(const std::string &name,
                          Data               data,
                          const bool         is_series)
   {
-    const std::vector<std::string> data_sets = data.names;
-    std::set<unsigned int>         beyond_range;
-    data.for_each_value([&beyond_range](const unsigned int i, auto &value) {
-      if (cut_off(value))
-        beyond_range.insert(i);
-    });
-
     // Like DataOutInterface::write_vtu_with_pvtu_record(), whose errors do not
     // name the file.
     const unsigned int n_ranks = Utilities::MPI::n_mpi_processes(communicator);
@@ -175,36 +163,6 @@ namespace Viscoplastic
       if (const auto &[file, text] = of_series; !file.empty())
         replace_file(file, text);
     });
-
-    return remark_on_range(record + ".pvtu", data_sets, beyond_range);
-  }
-
-
-
-  template <int dim>
-  std::string
-  Output<dim>::remark_on_range(const std::string              &file,
-                               const std::vector<std::string> &data_sets,
-                               const std::set<unsigned int>   &cut_off)
-  {
-    // There is a data set for each component of a vector.
-    std::vector<int> is_cut(data_sets.size() + 1, 0);
-    for (const unsigned int i : cut_off)
-      is_cut[i] = 1;
-    Utilities::MPI::max(is_cut, communicator, is_cut);
-    std::vector<std::string> fields;
-    for (unsigned int i = 0; i < is_cut.size(); ++i)
-      if (const std::string field =
-            i < data_sets.size() ? "'" + data_sets[i] + "'" : "the coordinates";
-          is_cut[i] == 1 &&
-          cut_fields.insert(file.substr(0, file.find('_')) + field).second)
-        fields.push_back(field);
-    if (fields.empty())
-      return "";
-    return "Warning: '" + path + file + "' has " +
-           number(std::numeric_limits<float>::max(), 2) +
-           ", the largest number of single precision, where the values of " +
-           enumeration(fields) + " are larger; choose other units to see them.";
   }
 
 
@@ -232,7 +190,7 @@ namespace Viscoplastic
 
 
   template <int dim>
-  std::string
+  void
   Output<dim>::write_body(const FlowLaws<dim>  &laws,
                           const State<dim>     &state,
                           const Vector<double> *squared_estimate)
@@ -241,18 +199,19 @@ namespace Viscoplastic
     DistributedVector       difference;
     BodyData<dim>           body{stress_space.space,
                        {},
-                       {{"displacement",
+                       {{column_of(RecordedField::displacement),
                                    &reported_displacement(scene, state, difference)},
-                                  {"velocity", &state.velocity}},
+                                  {column_of(RecordedField::velocity), &state.velocity}},
                        {}};
 
     // All ranks need the same fields, including ranks without cells.
     const std::set<RecordedField> fields = BodyFields<dim>::of_output(scene);
     const BodyFields<dim>         means(laws, state, fields);
-    for (std::string &name : BodyFields<dim>::names(fields))
-      body.means.emplace_back(std::move(name), std::vector<float>());
+    for (const FieldColumn &column : columns_of<dim>(fields, false))
+      body.means.emplace_back(column, std::vector<float>());
     const std::size_t n_fields = body.means.size();
-    body.means.emplace_back("subdomain", std::vector<float>());
+    body.means.emplace_back(FieldColumn{"subdomain", 0, Quantity::pure_number},
+                            std::vector<float>());
     for (std::size_t c = 0; c < stress_space.space.cells.size(); ++c)
       if (const auto &cell = stress_space.space.cells[c];
           scene.is_present(cell->material_id()))
@@ -264,29 +223,32 @@ namespace Viscoplastic
           body.cells.push_back(cell);
         }
     const auto add_root = [&](const std::string    &name,
+                              const Quantity        quantity,
                               const Vector<double> &squares) {
       std::vector<float> roots;
       for (const auto &cell : body.cells)
         roots.push_back(std::sqrt(squares[cell->active_cell_index()]));
-      body.means.emplace_back(name, std::move(roots));
+      body.means.emplace_back(FieldColumn{name, 0, quantity}, std::move(roots));
     };
     if (squared_estimate != nullptr)
-      add_root("estimator", *squared_estimate);
+      add_root("estimator", quantity_of_estimator(scene), *squared_estimate);
     if (scene.exact_solution)
       {
         add_root(
           "error_energy",
+          Quantity::energy_norm,
           solution_errors(stress_space, state, nullptr).squared_energy_by_cell);
-        add_root("recovery", squared_recovery_estimate(stress_space, state));
+        add_root("recovery",
+                 Quantity::energy_norm,
+                 squared_recovery_estimate(stress_space, state));
       }
 
-    std::string  remark;
     const double degrees = scene.parameters.output.revolved_angle;
     const bool   is_hdf5 = is_in_hdf5("solution");
     if (is_hdf5)
-      remark = write_in_hdf5(body, state.t);
+      write_in_hdf5(body, state.t);
     if (is_hdf5 && degrees == 0.)
-      return remark;
+      return;
     BodyOutput<dim> output(scene, body);
     if constexpr (dim == 2)
       if (degrees > 0.)
@@ -302,13 +264,14 @@ namespace Viscoplastic
           output.make_patches();
           write_vtu("revolved", revolved(output, edges, degrees));
         }
-    return is_hdf5 ? remark : write_vtu("solution", std::move(output));
+    if (!is_hdf5)
+      write_vtu("solution", std::move(output));
   }
 
 
 
   template <int dim>
-  std::string
+  void
   Output<dim>::write_contact(const std::string      &name,
                              const StressSpace<dim> &stress_space,
                              const State<dim>       &state,
@@ -322,11 +285,9 @@ namespace Viscoplastic
     DistributedVector         difference;
     const DistributedVector  &reported =
       reported_displacement(scene, state, difference);
-    output.add_field(scene, "displacement", true);
+    output.add_field(scene, column_of(RecordedField::displacement));
     for (const RecordedField field : fields)
-      output.add_field(scene,
-                       BoundaryFields<dim>::name(field),
-                       BoundaryFields<dim>::is_vector(field));
+      output.add_field(scene, column_of(field));
 
     for (std::size_t c = 0; c < space.cells.size(); ++c)
       for (const unsigned int f : space.cells[c]->face_indices())
@@ -360,7 +321,7 @@ namespace Viscoplastic
                 patch.data(row++, i) = value;
             }
         }
-    return write_vtu(name, std::move(output));
+    write_vtu(name, std::move(output));
   }
 
 

@@ -7,75 +7,81 @@
 #include <cmath>
 #include <filesystem>
 #include <iomanip>
+#include <sstream>
 
 namespace Viscoplastic
 {
   using namespace dealii;
 
+  TableFile::TableFile(const std::string                 &name,
+                       const std::optional<unsigned int> &last_step,
+                       const std::size_t                  least_rows)
+    : name(name)
+  {
+    require_writable_file(name);
+    std::error_code error;
+    if (last_step)
+      {
+        std::ifstream  earlier(name, std::ios::binary);
+        std::uintmax_t size   = 0; // in bytes
+        std::size_t    n_rows = 0;
+        // An incomplete last line, without its end, is dropped.
+        for (std::string line; std::getline(earlier, line) && !earlier.eof();
+             size += line.size() + 1)
+          if (size == 0)
+            header = line;
+          else if (std::strtoul(line.c_str(), nullptr, 10) <= *last_step)
+            ++n_rows;
+          else
+            break;
+        if (n_rows < least_rows)
+          refuse("The rows up to step " + std::to_string(*last_step) +
+                 ", with which the run would go on, are not in '" + name +
+                 "'.");
+        std::filesystem::resize_file(name, size, error);
+      }
+    file.open(name, last_step ? std::ios::app : std::ios::out);
+    if (error || !file)
+      refuse("The file '" + name + "' cannot be written.");
+  }
+
+
+
+  void
+  TableFile::write(const std::string &rows)
+  {
+    file << rows << std::flush;
+    if (!file)
+      refuse("Writing to '" + name + "' failed; is the disk full?");
+  }
+
+
+
+  void
+  TableFile::synchronize() const
+  {
+    // The stream has been flushed by write().
+    Viscoplastic::synchronize(name);
+  }
+
+
+
   Statistics::Statistics(const std::string &file_name,
                          const Units       &units,
                          const unsigned int dim)
-    : name(file_name)
+    : file(file_name)
     , units(units)
     , dim(dim)
-  {
-    require_writable_file(name);
-    file.open(name);
-    if (!file)
-      refuse("The file '" + name + "' cannot be written.");
-  }
-
-
-
-  TableBeginning
-  beginning_of_table(const std::string &name, const unsigned int last_step)
-  {
-    require_writable_file(name);
-    std::ifstream  file(name, std::ios::binary);
-    TableBeginning result;
-    std::string    line;
-    // An incomplete last line, without its end, is dropped.
-    for (; std::getline(file, line) && !file.eof();
-         result.size += line.size() + 1)
-      if (result.size == 0)
-        result.header = line;
-      else if (std::strtoul(line.c_str(), nullptr, 10) <= last_step)
-        ++result.n_rows;
-      else
-        break;
-    if (result.n_rows == 0)
-      refuse("The rows up to step " + std::to_string(last_step) +
-             ", with which the run would go on, are not in '" + name + "'.");
-    return result;
-  }
-
-
-
-  std::ofstream
-  append_to_table(const std::string &name, const TableBeginning &beginning)
-  {
-    std::error_code error;
-    std::filesystem::resize_file(name, beginning.size, error);
-    std::ofstream file(name, std::ios::app);
-    if (error || !file)
-      refuse("The file '" + name + "' cannot be written.");
-    return file;
-  }
+  {}
 
 
 
   Statistics::Statistics(const std::string &file_name,
                          const unsigned int last_step)
-    : name(file_name)
+    : file(file_name, last_step, last_step + 1)
   {
-    const TableBeginning beginning = beginning_of_table(name, last_step);
-    if (beginning.n_rows != last_step + 1)
-      refuse("The rows up to step " + std::to_string(last_step) +
-             ", with which the run would go on, are not in '" + name + "'.");
-    for (const std::string &column :
-         Utilities::split_string_list(beginning.header))
+    for (const std::string &column : Utilities::split_string_list(file.header))
       columns.push_back(without_label(column));
-    file = append_to_table(name, beginning);
   }
 
 
@@ -98,10 +104,10 @@ namespace Viscoplastic
     if (columns.empty())
       {
         columns = names;
-        file << header << '\n';
+        file.write(header + '\n');
       }
     if (columns != names)
-      refuse("The columns of '" + name +
+      refuse("The columns of '" + file.name +
              "' are not those of this run, which cannot go on with it.");
     // Refuse values that are not finite. The stability limit is infinite where
     // nothing flows.
@@ -123,20 +129,10 @@ namespace Viscoplastic
                  "range of floating-point numbers, choose other units or look "
                  "for a datum that is too large or too small.");
       }
-    file << std::setprecision(12);
+    std::ostringstream text;
+    text << std::setprecision(12);
     for (std::size_t i = 0; i < values.size(); ++i)
-      file << (i == 0 ? "" : ",") << values[i];
-    file << std::endl;
-    if (!file)
-      refuse("Writing to '" + name + "' failed; is the disk full?");
-  }
-
-
-
-  void
-  Statistics::synchronize()
-  {
-    // The stream has been flushed by write().
-    Viscoplastic::synchronize(name);
+      text << (i == 0 ? "" : ",") << values[i];
+    file.write(text.str() + '\n');
   }
 } // namespace Viscoplastic

@@ -286,12 +286,10 @@ namespace Viscoplastic
                        are_few);
         if (!point_fields)
           continue;
-        const std::vector<std::string> &names = point_fields->names();
-        for (std::size_t c = 0; c < names.size(); ++c, ++value)
+        const std::vector<FieldColumn> &columns = point_fields->columns();
+        for (std::size_t c = 0; c < columns.size(); ++c, ++value)
           if (c < point_fields->n_of_body() || point_fields->is_on_contact(i))
-            row.add(point + "_" + names[c],
-                    *value,
-                    quantity_of_field(names[c]));
+            row.add(point + "_" + columns[c].name, *value, columns[c].quantity);
       }
     for (std::size_t i = 0; i < quantities.integrals.size(); ++i)
       row.add(integrals->columns()[i].name,

@@ -5,35 +5,70 @@
 
 namespace Viscoplastic
 {
-  Quantity
-  quantity_of_field(const std::string &name)
+  const FieldColumn &
+  column_of(const RecordedField field)
   {
-    // Fields that are not listed have no unit.
-    static const std::map<std::string, Quantity> of_fields{
-      {"displacement", Quantity::length},
-      {"velocity", Quantity::velocity},
-      {"stress", Quantity::stress},
-      {"irreversible_stress", Quantity::stress},
-      {"von_mises", Quantity::stress},
-      {"creep_rate", Quantity::rate},
-      {"temperature", Quantity::temperature},
-      {"principal_stress", Quantity::stress},
-      {"error_energy", Quantity::energy_norm},
-      {"recovery", Quantity::energy_norm},
-      {"slip", Quantity::length},
-      {"slip_rate", Quantity::velocity},
-      {"traction", Quantity::stress},
-      {"bound", Quantity::stress},
-      {"contact_pressure", Quantity::stress},
-      {"gap", Quantity::length},
-      {"normal_traction", Quantity::stress},
-      {"stress_vector", Quantity::stress},
-      {"friction_work", Quantity::work_per_area}};
-    // The name is that of a field or of a component.
-    for (const std::string &field : {name, name.substr(0, name.rfind('_'))})
-      if (const auto found = of_fields.find(field); found != of_fields.end())
-        return found->second;
-    return Quantity::pure_number;
+    using Field                                    = RecordedField;
+    constexpr Quantity                        none = Quantity::pure_number;
+    static const std::map<Field, FieldColumn> columns{
+      {Field::displacement, {"displacement", 1, Quantity::length}},
+      {Field::velocity, {"velocity", 1, Quantity::velocity}},
+      {Field::stress, {"stress", 2, Quantity::stress}},
+      {Field::von_mises_stress, {"von_mises", 0, Quantity::stress}},
+      {Field::irreversible_stress,
+       {"irreversible_stress", 2, Quantity::stress}},
+      {Field::total_strain, {"strain", 2, none}},
+      {Field::irreversible_strain, {"irreversible_strain", 2, none}},
+      {Field::creep_strain, {"creep_strain", 0, none}},
+      {Field::creep_rate, {"creep_rate", 0, Quantity::rate}},
+      {Field::history, {"history", 2, none}},
+      {Field::principal_stresses,
+       {"principal_stress", FieldColumn::principal, Quantity::stress}},
+      {Field::temperature, {"temperature", 0, Quantity::temperature}},
+      {Field::slip, {"slip", 1, Quantity::length}},
+      {Field::slip_rate, {"slip_rate", 1, Quantity::velocity}},
+      {Field::traction, {"traction", 1, Quantity::stress}},
+      {Field::bound, {"bound", 0, Quantity::stress}},
+      {Field::utilization, {"utilisation", 0, none}},
+      {Field::stick, {"stick", 0, none}},
+      {Field::friction_work, {"friction_work", 0, Quantity::work_per_area}},
+      {Field::contact_pressure, {"contact_pressure", 0, Quantity::stress}},
+      {Field::gap, {"gap", 0, Quantity::length}},
+      {Field::normal_traction, {"normal_traction", 0, Quantity::stress}},
+      {Field::stress_vector, {"stress_vector", 1, Quantity::stress}}};
+    return columns.at(field);
+  }
+
+
+
+  template <int dim>
+  std::vector<FieldColumn>
+  columns_of(const std::set<RecordedField> &fields, const bool of_boundary)
+  {
+    const std::string        xyz = "xyz";
+    std::vector<FieldColumn> result;
+    for (const RecordedField field : fields)
+      {
+        const auto &[name, rank, quantity] = column_of(field);
+        const auto add =
+          [&, name = name, quantity = quantity](const std::string &component) {
+            result.push_back({name + component, 0, quantity});
+          };
+        if (is_of_boundary(field) != of_boundary)
+          continue;
+        if (rank == 0)
+          add("");
+        else if (rank == 1)
+          for (unsigned int d = 0; d < dim; ++d)
+            add(std::string("_") + xyz[d]);
+        else if (rank == 2)
+          for (const auto &[i, j] : stress_components<dim>())
+            add(std::string("_") + xyz[i] + xyz[j]);
+        else
+          for (const char *number : {"_1", "_2", "_3"})
+            add(number);
+      }
+    return result;
   }
 
 
@@ -50,18 +85,6 @@ namespace Viscoplastic
 
 
 
-  template <int dim>
-  std::string
-  label_of_field(const Scene<dim> &scene, const std::string &name)
-  {
-    return scene.parameters.units.label(name == "estimator" ?
-                                          quantity_of_estimator(scene) :
-                                          quantity_of_field(name),
-                                        dim);
-  }
-
-
-
   VISCOPLASTIC_INSTANTIATE(quantity_of_estimator);
-  VISCOPLASTIC_INSTANTIATE(label_of_field);
+  VISCOPLASTIC_INSTANTIATE(columns_of);
 } // namespace Viscoplastic

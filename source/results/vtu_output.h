@@ -43,27 +43,11 @@ namespace Viscoplastic
     const AdmissibleSpace<dim> &space;
     /// The owned cells that are present in this stage.
     std::vector<Cell> cells;
-    /// Cartesian fields on relevant dofs, with their names.
-    std::vector<std::pair<std::string, const DistributedVector *>> vectors;
-    /// Cell means in the order of `cells`, with their names.
-    std::vector<std::pair<std::string, std::vector<float>>> means;
+    /// Cartesian fields on relevant dofs.
+    std::vector<std::pair<FieldColumn, const DistributedVector *>> vectors;
+    /// Cell means in the order of `cells`.
+    std::vector<std::pair<FieldColumn, std::vector<float>>> means;
   };
-
-
-
-  /// Replace a value beyond the range of single precision, in which files are
-  /// written, by the largest number: ParaView cannot scale colors to infinite
-  /// values. Returns whether this was needed.
-  template <typename Number>
-  bool
-  cut_off(Number &value)
-  {
-    constexpr float largest = std::numeric_limits<float>::max();
-    if (!(std::abs(value) > largest))
-      return false;
-    value = std::copysign(largest, value);
-    return true;
-  }
 
 
 
@@ -98,11 +82,11 @@ namespace Viscoplastic
     std::vector<VectorRange>                        vectors;
 
     void
-    add_field(const Scene<dim>  &scene,
-              const std::string &field,
-              const bool         is_vector)
+    add_field(const Scene<dim> &scene, const FieldColumn &field)
     {
-      const std::string name = field + label_of_field(scene, field);
+      const bool        is_vector = field.rank == 1;
+      const std::string name =
+        field.name + scene.parameters.units.label(field.quantity, dim);
       if (is_vector)
         vectors.emplace_back(
           names.size(),
@@ -110,23 +94,6 @@ namespace Viscoplastic
           name,
           DataComponentInterpretation::component_is_part_of_vector);
       names.insert(names.end(), is_vector ? dim : 1, name);
-    }
-
-    /// Call act(index of the data set, value) for all values, with the number
-    /// of data sets standing for the coordinates.
-    template <typename Action>
-    void
-    for_each_value(const Action &act)
-    {
-      for (auto &patch : patches)
-        {
-          for (unsigned int i = 0; i < names.size(); ++i)
-            for (unsigned int j = 0; j < patch.data.n_cols(); ++j)
-              act(i, patch.data(i, j));
-          for (Point<dim> &x : patch.vertices)
-            for (unsigned int d = 0; d < dim; ++d)
-              act(names.size(), x[d]);
-        }
     }
 
     /// Return the n-th part of a VTU file; empty after the last one.
@@ -165,15 +132,15 @@ namespace Viscoplastic
     BodyOutput(const Scene<dim> &scene, const BodyData<dim> &body)
       : vertices(body.space.relevant.n_elements() / dim)
     {
-      for (const auto &[name, field] : body.vectors)
+      for (const auto &[column, field] : body.vectors)
         {
-          this->add_field(scene, name, true);
+          this->add_field(scene, column);
           nodal.emplace_back(field->begin(),
                              field->begin() + vertices.size() * dim);
         }
-      for (const auto &[name, values] : body.means)
+      for (const auto &[column, values] : body.means)
         {
-          this->add_field(scene, name, false);
+          this->add_field(scene, column);
           means.push_back(values);
         }
       nodes.reserve(body.cells.size() * n_vertices);
@@ -185,28 +152,6 @@ namespace Viscoplastic
                             dim);
             vertices[nodes.back()] = cell->vertex(v);
           }
-    }
-
-    template <typename Action>
-    void
-    for_each_value(const Action &act)
-    {
-      unsigned int row = 0;
-      for (auto &values : nodal)
-        {
-          for (std::size_t i = 0; i < values.size(); ++i)
-            act(row + i % dim, values[i]);
-          row += dim;
-        }
-      for (auto &values : means)
-        {
-          for (float &value : values)
-            act(row, value);
-          ++row;
-        }
-      for (Point<dim> &x : vertices)
-        for (unsigned int d = 0; d < dim; ++d)
-          act(row, x[d]);
     }
 
     /// Part 0 has the mesh, the next ones have a field each, and the last one

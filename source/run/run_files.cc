@@ -176,12 +176,11 @@ namespace Viscoplastic
       accepted.space_estimate.squared_indicators;
     const bool is_due = output->is_due(step);
     if (is_due)
-      for (const std::string &remark : output->write_fields(
-             discretization->laws,
-             accepted.state,
-             discretization->face.get(),
-             squared_indicators.size() > 0 ? &squared_indicators : nullptr))
-        console.remark(remark);
+      output->write_fields(discretization->laws,
+                           accepted.state,
+                           discretization->face.get(),
+                           squared_indicators.size() > 0 ? &squared_indicators :
+                                                           nullptr);
     else
       output->report_failure();
     lines.write(accepted.state, is_due);

@@ -403,64 +403,6 @@ class ThreeDimensions(TestCase):
         self.assertClose(force, expected, absolute=SINGLE * abs(expected).max())
 
 
-STRESSES = "stress", "irreversible_stress", "von_mises", "traction", "bound"
-
-
-class SinglePrecision(TestCase):
-    def test_values_beyond_it_are_cut_off(self):
-        """In units that make stresses of 1e39, and only these."""
-        factor = 1e40
-        overrides = {
-            "Geometry/Arguments": "4, 2 : 0, 0 : 2, 1 : true",
-            "Time/Phases": "1: 4, 2: 4",
-            "Output/Fields every": 2,
-        }
-        for ranks in 1, 2:
-            usual = run("slab", overrides, ranks)
-            scaled = run(
-                "slab",
-                {
-                    **overrides,
-                    "Material/Young's modulus": factor,
-                    "Material/maxwell/Viscosity": 0.5 * factor,
-                    "Boundary 0/Traction": f"{0.3 * factor}*min(t, 2 - t); 0",
-                    "Boundary 2/Friction bound": 0.08 * factor,
-                },
-                ranks,
-            )
-            # each field once, and once more at the end
-            warnings = [
-                line
-                for line in scaled.stdout.splitlines()
-                if "single precision" in line
-            ]
-            for name in "'stress_xx'", "'von_mises'", "'traction'", "'bound'":
-                self.assertEqual(sum(name in line for line in warnings), 2, name)
-            self.assertNotIn("single precision", usual.stdout)
-            self.assertNotRegex(warnings[0], "displacement|velocity|coordinates")
-            largest = np.finfo(np.float32).max
-            n_cut = 0
-            for series in "solution", "contact":
-                for index in range(len(usual.series(series))):
-                    fields = scaled.fields(series, index)
-                    expected = usual.fields(series, index)
-                    for kind in "point_data", "cell_data":
-                        for name, values in getattr(fields, kind).items():
-                            self.assertTrue(np.all(np.isfinite(values)), name)
-                            wanted = getattr(expected, kind)[name]
-                            if name.startswith(STRESSES):
-                                wanted = wanted * factor
-                            wanted = np.clip(wanted, -largest, largest)
-                            n_cut += np.count_nonzero(abs(wanted) == largest)
-                            self.assertClose(
-                                values,
-                                wanted,
-                                absolute=1e-4 * abs(wanted).max(),
-                                what=name,
-                            )
-            self.assertGreater(n_cut, 0)
-
-
 class Unwritable(TestCase):
     """What cannot be written is named in one sentence, and the run fails: a disk
     without space (/dev/full, or a limit on the size of files), and what is no

@@ -39,10 +39,6 @@ namespace Viscoplastic
     static std::set<RecordedField>
     of_output(const Scene<dim> &scene);
 
-    /// The names of the values: displacement_x, ..., creep_rate, ...
-    static std::vector<std::string>
-    names(const std::set<RecordedField> &fields);
-
     /// Add to each of @p values the sum of weight times value over the vertices
     /// of an owned cell, which is an interpolation or an integral.
     void

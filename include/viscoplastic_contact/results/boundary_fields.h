@@ -32,26 +32,6 @@ namespace Viscoplastic
     static std::set<RecordedField>
     of_output(const Scene<dim> &scene, const ContactFace<dim> *face);
 
-    static std::string
-    name(const RecordedField field)
-    {
-      std::string name = name_of(field);
-      std::replace(name.begin(), name.end(), ' ', '_');
-      return name;
-    }
-    static bool
-    is_vector(const RecordedField field)
-    {
-      return field == RecordedField::slip ||
-             field == RecordedField::slip_rate ||
-             field == RecordedField::traction ||
-             field == RecordedField::stress_vector;
-    }
-
-    /// The names of the values; vectors have one for each component.
-    static std::vector<std::string>
-    names(const std::set<RecordedField> &fields);
-
     /// Whether a boundary is the primary side of contact of two bodies.
     bool
     is_other_side(const types::boundary_id id) const
@@ -95,20 +75,20 @@ namespace Viscoplastic
     void
     carry_across();
 
-    bool
-    has(const RecordedField field) const
-    {
-      return fields.count(field) > 0;
-    }
+    /// The value of a field of contact at a contact point.
+    double
+    value_at_point(const RecordedField     field,
+                   const ContactFace<dim> &face,
+                   const unsigned int      p) const;
 
     const StressSpace<dim> &stress_space;
     const State<dim>       &state;
     std::set<RecordedField> fields;
     /// The secondary boundary of each primary one.
     std::map<types::boundary_id, types::boundary_id> secondary_of;
-    /// Nodal fields of contact points, with ghosts; zero at nodes without a
-    /// point, empty unless requested.
-    DistributedVector slip, slip_rate, density, bound, utilization, slipping,
-      pressure, gap, friction_work;
+    /// The requested fields of contact points, with ghosts, zero at nodes
+    /// without a point: as they are written but for `stick', 1 minus it, and
+    /// `slip', `slip rate' and `traction', whose normal parts do not count.
+    std::map<RecordedField, DistributedVector> nodal;
   };
 } // namespace Viscoplastic

@@ -4,6 +4,7 @@
 #include <viscoplastic_contact/discretization/discretization.h>
 #include <viscoplastic_contact/mesh/point_location.h>
 #include <viscoplastic_contact/results/boundary_fields.h>
+#include <viscoplastic_contact/results/unit_labels.h>
 
 #include <array>
 #include <memory>
@@ -25,12 +26,12 @@ namespace Viscoplastic
                 const std::vector<Point<dim>> &points,
                 const std::set<RecordedField> &fields);
 
-    /// The names of the values; those from n_of_body() on are fields of the
+    /// What the values are; those from n_of_body() on are fields of the
     /// boundary.
-    const std::vector<std::string> &
-    names() const
+    const std::vector<FieldColumn> &
+    columns() const
     {
-      return all_names;
+      return all_columns;
     }
 
     std::size_t
@@ -56,7 +57,7 @@ namespace Viscoplastic
   private:
     const Discretization<dim>    &discretization;
     const std::set<RecordedField> fields;
-    std::vector<std::string>      all_names;
+    std::vector<FieldColumn>      all_columns;
     std::size_t                   n_body;
     /// The points in cells of the body, and on faces of Gamma_3.
     std::vector<CellPoint<dim>> in_body, on_face;

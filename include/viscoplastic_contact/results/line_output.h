@@ -2,8 +2,8 @@
 #pragma once
 
 #include <viscoplastic_contact/results/field_probes.h>
+#include <viscoplastic_contact/results/statistics.h>
 
-#include <fstream>
 #include <memory>
 #include <optional>
 #include <string>
@@ -35,8 +35,8 @@ namespace Viscoplastic
     }
 
     /// Begin new files in a directory, or continue after step @p last_step,
-    /// dropping later rows. Throws ExcMessage if a file is missing, before any
-    /// is changed, or cannot be written, as the functions below do. Collective.
+    /// dropping later rows. Throws ExcMessage if a file is missing or cannot be
+    /// written, as the functions below do. Collective.
     void
     open(const std::string                 &directory,
          const std::optional<unsigned int> &last_step = {});
@@ -57,8 +57,7 @@ namespace Viscoplastic
     /// The fields along each line on the present mesh; empty until the first
     /// output.
     std::vector<std::unique_ptr<FieldProbes<dim>>> probes;
-    /// The names of the files, and the files; empty on ranks other than 0.
-    std::vector<std::string>   names;
-    std::vector<std::ofstream> files;
+    /// Empty on ranks other than 0.
+    std::vector<std::unique_ptr<TableFile>> files;
   };
 } // namespace Viscoplastic

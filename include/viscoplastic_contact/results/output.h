@@ -60,10 +60,9 @@ namespace Viscoplastic
 
     /// Write the fields of a state, including `Output/Additional fields'. @p
     /// face is null without contact points, @p squared_estimate without an
-    /// estimator. Returns sentences about fields that exceed the range of
-    /// single precision for the first time. In a run with one rank, a thread
-    /// writes the files in the background, one output at a time. Collective.
-    std::vector<std::string>
+    /// estimator. In a run with one rank, a thread writes the files in the
+    /// background, one output at a time. Collective.
+    void
     write_fields(const FlowLaws<dim>    &laws,
                  const State<dim>       &state,
                  const ContactFace<dim> *face,
@@ -87,13 +86,12 @@ namespace Viscoplastic
     /// first output; pictures show supports and loads there.
     void
     write_boundary(const AdmissibleSpace<dim> &space);
-    // The functions below return remarks as write_fields() does.
-    std::string
+    void
     write_body(const FlowLaws<dim>  &laws,
                const State<dim>     &state,
                const Vector<double> *squared_estimate);
     /// Write Gamma_3 ("contact") or the primary boundaries ("opposite").
-    std::string
+    void
     write_contact(const std::string      &name,
                   const StressSpace<dim> &stress_space,
                   const State<dim>       &state,
@@ -101,20 +99,13 @@ namespace Viscoplastic
     /// Queue the piece of this rank and, on rank 0, the record of all pieces
     /// and that of the series for the next write_in_background().
     template <typename Data>
-    std::string
+    void
     write_vtu(const std::string &name,
               Data               data, // a PatchOutput
               const bool         is_series = true);
     /// As write_vtu(), for the body.
-    std::string
+    void
     write_in_hdf5(const BodyData<dim> &body, const double t);
-    /// Return a sentence about data sets of a file with values cut off for the
-    /// first time. @p cut_off: their indices, with the number of data sets
-    /// standing for the coordinates. Collective.
-    std::string
-    remark_on_range(const std::string              &file,
-                    const std::vector<std::string> &data_sets,
-                    const std::set<unsigned int>   &cut_off);
     /// Start writing the queued `files`; with several ranks, which leave no
     /// processor idle, write them at once.
     void
@@ -146,7 +137,5 @@ namespace Viscoplastic
     std::vector<std::function<void()>> files;
     /// Ready when the files are written, for which its destructor waits.
     std::future<void> writing;
-    /// Fields that have been reported as cut off.
-    std::set<std::string> cut_fields;
   };
 } // namespace Viscoplastic

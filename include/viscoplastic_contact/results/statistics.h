@@ -4,6 +4,7 @@
 #include <viscoplastic_contact/base/units.h>
 
 #include <fstream>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -64,27 +65,38 @@ namespace Viscoplastic
 
 
 
-  /// The first line and the rows up to some step of a table whose rows begin
-  /// with the number of a step.
-  struct TableBeginning
+  /// A file of rows that begin with the number of a step, the first line
+  /// excepted. Rows are flushed, so that those of a run that is killed remain.
+  /// Throws ExcMessage if the file cannot be written.
+  class TableFile
   {
-    std::string    header;
-    std::size_t    n_rows = 0;
-    std::uintmax_t size   = 0; // in bytes
+  public:
+    /// Begin a file anew, or continue it after step @p last_step, dropping
+    /// later rows; throws, before anything is changed, if there are fewer than
+    /// @p least_rows up to that step.
+    explicit TableFile(const std::string                 &name,
+                       const std::optional<unsigned int> &last_step  = {},
+                       const std::size_t                  least_rows = 1);
+
+    void
+    write(const std::string &rows);
+
+    /// Flush all rows to disk.
+    void
+    synchronize() const;
+
+    const std::string name;
+    /// The first line of a file that is continued.
+    std::string header;
+
+  private:
+    std::ofstream file;
   };
 
-  TableBeginning
-  beginning_of_table(const std::string &file, const unsigned int last_step);
 
-  /// Open a table behind this beginning, dropping the rest. Throws ExcMessage.
-  std::ofstream
-  append_to_table(const std::string &file, const TableBeginning &beginning);
-
-
-  /// A table of comma separated values. The first row defines the columns. Each
-  /// row is flushed, so that the rows of a run that is killed remain. The first
-  /// line has the names of the columns, followed by a blank and unit labels
-  /// such as [MPa] if the scene declares units.
+  /// A table of comma separated values. The first row defines the columns. The
+  /// first line has the names of the columns, followed by a blank and unit
+  /// labels such as [MPa] if the scene declares units.
   class Statistics
   {
   public:
@@ -106,13 +118,15 @@ namespace Viscoplastic
 
     /// Flush all rows to disk. Throws ExcMessage.
     void
-    synchronize();
+    synchronize() const
+    {
+      file.synchronize();
+    }
 
   private:
-    std::string              name;
+    TableFile                file;
     Units                    units;
     unsigned int             dim = 0;
-    std::ofstream            file;
     std::vector<std::string> columns;
   };
 } // namespace Viscoplastic

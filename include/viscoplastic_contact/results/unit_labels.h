@@ -4,14 +4,31 @@
 #include <viscoplastic_contact/base/units.h>
 #include <viscoplastic_contact/scene/scene.h>
 
+#include <set>
 #include <string>
+#include <vector>
 
 namespace Viscoplastic
 {
-  /// The physical quantity of a field of the body or of the boundary, or of one
-  /// of its components, given its name; a pure number if it has no unit.
-  Quantity
-  quantity_of_field(const std::string &name);
+  /// A field, or a component of one, in files of results.
+  struct FieldColumn
+  {
+    std::string name;
+    /// The rank of the tensor; for fields, not for components, it may also be
+    /// principal, three principal values.
+    unsigned int                  rank;
+    Quantity                      quantity;
+    static constexpr unsigned int principal = 3;
+  };
+
+  const FieldColumn &
+  column_of(const RecordedField field);
+
+  /// The components of the fields of the body, or of the boundary, in the order
+  /// of the enumeration: displacement_x, ..., creep_rate, ...
+  template <int dim>
+  std::vector<FieldColumn>
+  columns_of(const std::set<RecordedField> &fields, const bool of_boundary);
 
   /// The quantity of cell-wise estimates: roots of energies or, for a quantity
   /// of interest, of any unit.
@@ -19,9 +36,4 @@ namespace Viscoplastic
   Quantity
   quantity_of_estimator(const Scene<dim> &scene);
 
-  /// The label after the name of a field in results: " [MPa]", or nothing if
-  /// the scene declares no units.
-  template <int dim>
-  std::string
-  label_of_field(const Scene<dim> &scene, const std::string &name);
 } // namespace Viscoplastic

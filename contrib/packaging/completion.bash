@@ -9,14 +9,11 @@
 _viscoplastic_contact_entries()
 {
   "$1" --describe "${@:2}" 2>/dev/null | awk '
-    # Material 1 and Table 1 are described in comments.
-    /^# subsection [A-Z][a-z]+ [0-9]+$/ { commented = 1 }
-    commented { sub(/^# ?/, "") }
     { sub(/^ +/, "") }
     /^subsection / { sub(/^subsection /, ""); path[++depth] = $0; next }
-    /^end$/ { if (depth > 0 && --depth == 0) commented = 0; next }
+    /^end$/ { --depth; next }
     /^set .* =/ {
-      sub(/^set /, ""); sub(/ =.*/, "")
+      sub(/^set /, ""); sub(/ *=.*/, "")
       prefix = ""
       for (i = 1; i <= depth; ++i) prefix = prefix path[i] "/"
       print prefix $0 "="

@@ -28,26 +28,15 @@ namespace Viscoplastic
       std::optional<double> number = {};
       /// Whether a number in it has a unit.
       bool has_unit = false;
-
-      /// A number without unit, which is a pure number beside numbers with
-      /// units.
-      bool
-      is_bare_number() const
-      {
-        return !dimension && number && !has_unit;
-      }
     };
 
-    const Value pure_number{Dimension()}, anything{};
+    const Value anything{}, pure_number{Dimension()};
 
-    /// Thrown if dimensions do not match, with a part of the message.
-    struct Contradiction
+    bool
+    is_pure(const Value &value)
     {
-      std::string words;
-    };
-
-    // Limits the recursion; muParser itself needs no deep stack.
-    const unsigned int deepest = 1000;
+      return !value.dimension || *value.dimension == Dimension();
+    }
 
     /// Thrown if the text cannot be read.
     struct Unreadable
@@ -69,22 +58,22 @@ namespace Viscoplastic
     const std::set<std::string> of_pure_numbers{
       "sin",   "cos",   "tan",  "cot",  "csc",  "sec",   "asin",
       "acos",  "atan",  "sinh", "cosh", "tanh", "asinh", "acosh",
-      "atanh", "log10", "log2", "log",  "ln",   "exp",   "erfc"};
-
-    const std::set<std::string> of_equals{"min",
-                                          "max",
-                                          "sum",
-                                          "avg",
-                                          "abs",
-                                          "int",
-                                          "rint",
-                                          "ceil",
-                                          "floor",
-                                          "fmod"};
-
+      "atanh", "log10", "log2", "log",  "ln",   "exp",   "erfc"},
+      of_equals{"min",
+                "max",
+                "sum",
+                "avg",
+                "abs",
+                "int",
+                "rint",
+                "ceil",
+                "floor",
+                "fmod"};
 
 
-    /// Parses an expression as muParser does and computes its dimension.
+
+    /// Parses an expression as muParser does and computes its dimension. Throws
+    /// ExcMessage with a part of the message if dimensions contradict.
     class DimensionReader
     {
     public:
@@ -96,26 +85,24 @@ namespace Viscoplastic
       whole()
       {
         const Value value = choice();
-        if (next() != '\0')
-          throw Unreadable();
+        require(at == text.size());
         return value;
       }
 
     private:
-      char
-      next()
+      static void
+      require(const bool is_readable)
       {
-        while (at < text.size() && text[at] == ' ')
-          ++at;
-        return at < text.size() ? text[at] : '\0';
+        if (!is_readable)
+          throw Unreadable();
       }
 
       /// Skip and return the first of the @p tokens that comes next; return an
-      /// empty string if none does.
+      /// empty string if none does. Skips blanks.
       std::string
       take(const std::vector<std::string> &tokens)
       {
-        next();
+        at = std::min(text.find_first_not_of(' ', at), text.size());
         for (const std::string &token : tokens)
           if (text.compare(at, token.size(), token) == 0)
             {
@@ -131,49 +118,52 @@ namespace Viscoplastic
         return !take({token}).empty();
       }
 
+      /// The part of the text from @p begin to here.
+      std::string
+      part(const std::size_t begin) const
+      {
+        return "'" + excerpt(Utilities::trim(text.substr(begin, at - begin))) +
+               "'";
+      }
+
       /// Return the value of an operation on two operands that must have the
       /// same dimension.
       Value
       common(const Value &a, const Value &b, const std::size_t begin) const
       {
-        const bool has_unit = a.has_unit || b.has_unit;
-        if (!a.dimension || !b.dimension)
-          return {a.dimension ? a.dimension : b.dimension, {}, has_unit};
-        if (!(*a.dimension == *b.dimension))
-          throw Contradiction{
-            "'" + excerpt(Utilities::trim(text.substr(begin, at - begin))) +
-            "' brings together " + in_words(*a.dimension) + " and " +
-            in_words(*b.dimension)};
-        return {a.dimension, {}, has_unit};
+        if (a.dimension && b.dimension && !(*a.dimension == *b.dimension))
+          refuse(part(begin) + " brings together " + in_words(*a.dimension) +
+                 " and " + in_words(*b.dimension));
+        return {a.dimension ? a.dimension : b.dimension,
+                {},
+                a.has_unit || b.has_unit};
       }
 
       static Value
       power(const Value &base, const Value &exponent)
       {
-        if (exponent.dimension && !(*exponent.dimension == Dimension()))
-          throw Contradiction{"an exponent is " +
-                              in_words(*exponent.dimension) +
-                              ", since a unit follows it; write 1e6 for 10^6 "
-                              "and ^5/(1 day) for ^5/day"};
-        const auto number =
-          base.number && exponent.number ?
-            std::make_optional(std::pow(*base.number, *exponent.number)) :
-            std::nullopt;
-        if (!base.dimension || *base.dimension == Dimension())
-          return {base.dimension, number, base.has_unit};
-        if (!exponent.number)
+        if (!is_pure(exponent))
+          refuse("an exponent is " + in_words(*exponent.dimension) +
+                 ", since a unit follows it; write 1e6 for 10^6 and ^5/(1 day) "
+                 "for ^5/day");
+        if (!is_pure(base) && !exponent.number)
           return anything;
-        return {base.dimension->power(*exponent.number), number, base.has_unit};
+        Value result = base;
+        result.number.reset();
+        if (!is_pure(base))
+          result.dimension = base.dimension->power(*exponent.number);
+        if (base.number && exponent.number)
+          result.number = std::pow(*base.number, *exponent.number);
+        return result;
       }
 
-      /// Count the depth of the recursion.
+      /// Count the depth of the recursion; muParser itself needs no deep stack.
       void
       descend()
       {
-        if (++depth > deepest)
-          throw Contradiction{"'" + excerpt(text) + "' is nested more than " +
-                              std::to_string(deepest) +
-                              " deep, too deep for its units"};
+        if (++depth > 1000)
+          refuse("'" + excerpt(text) +
+                 "' is nested more than 1000 deep, too deep for its units");
       }
 
       Value
@@ -185,8 +175,7 @@ namespace Viscoplastic
         if (takes("?"))
           {
             value = choice();
-            if (!takes(":"))
-              throw Unreadable();
+            require(takes(":"));
             value = common(value, choice(), begin);
           }
         --depth;
@@ -210,60 +199,52 @@ namespace Viscoplastic
         for (std::string sign; !(sign = take(operators[precedence])).empty();)
           {
             const Value other = binary(precedence + 1);
-            value =
-              precedence == 0 ? anything : result(value, sign, other, begin);
+            if (precedence == 3)
+              value = product(value, other, sign == "*" ? 1. : -1.);
+            else if (precedence == 2)
+              {
+                const double factor = sign == "+" ? 1. : -1.;
+                const auto   a = value.number, b = other.number;
+                value = common(value, other, begin);
+                if (a && b)
+                  value.number = *a + factor * *b;
+              }
+            else
+              {
+                if (precedence == 1)
+                  common(value, other, begin);
+                value = anything;
+              }
           }
         return value;
       }
 
-      Value
-      result(Value              a,
-             const std::string &sign,
-             Value              b,
-             const std::size_t  begin) const
+      static Value
+      product(Value a, Value b, const double exponent)
       {
-        if (sign != "*" && sign != "/")
-          {
-            Value value = common(a, b, begin);
-            if (sign != "+" && sign != "-")
-              return anything; // the result of a comparison
-            if (a.number && b.number)
-              value.number = *a.number + (sign == "+" ? 1. : -1.) * *b.number;
-            return value;
-          }
-        const double exponent = sign == "*" ? 1. : -1.;
-        const auto   measures = [](const Value &value) {
-          return value.has_unit && value.dimension &&
-                 !(*value.dimension == Dimension());
-        };
-        if (a.is_bare_number() && measures(b))
-          a.dimension = Dimension();
-        if (b.is_bare_number() && measures(a))
-          b.dimension = Dimension();
-        Value value;
-        value.has_unit = a.has_unit || b.has_unit;
+        // A number without unit is a pure one beside numbers with units.
+        for (const auto &[bare, other] :
+             {std::make_pair(&a, &b), std::make_pair(&b, &a)})
+          if (!bare->dimension && bare->number && !bare->has_unit &&
+              other->has_unit && !is_pure(*other))
+            bare->dimension = Dimension();
+        Value result{{}, {}, a.has_unit || b.has_unit};
         if (a.number && b.number)
-          value.number = *a.number * std::pow(*b.number, exponent);
+          result.number = *a.number * std::pow(*b.number, exponent);
         if (a.dimension && b.dimension)
-          value.dimension = *a.dimension * b.dimension->power(exponent);
-        return value;
+          result.dimension = *a.dimension * b.dimension->power(exponent);
+        return result;
       }
 
       Value
       factor()
       {
         descend();
-        const bool has_minus = takes("-");
-        Value      value;
-        if (has_minus || !take({"+", "!"}).empty())
-          value = factor();
-        else
-          {
-            value = atom();
-            if (takes("^"))
-              value = power(value, factor());
-          }
-        if (has_minus && value.number)
+        const std::string sign  = take({"-", "+", "!"});
+        Value             value = sign.empty() ? atom() : factor();
+        if (sign.empty() && takes("^"))
+          value = power(value, factor());
+        if (sign == "-" && value.number)
           value.number = -*value.number;
         --depth;
         return value;
@@ -275,27 +256,22 @@ namespace Viscoplastic
         if (takes("("))
           {
             const Value value = choice();
-            if (!takes(")"))
-              throw Unreadable();
+            require(takes(")"));
             return value;
           }
-        next();
-        if (const std::size_t end = end_of_number(text, at); end > at)
+        const std::size_t begin = at;
+        if (at = end_of_number(text, begin); at > begin)
           {
-            const double number = std::strtod(&text[at], nullptr);
-            at                  = end;
-            if (const auto found = read_unit(text, end))
+            if (const auto found = read_unit(text, at))
               {
                 at = found->end;
                 return {found->unit.dimension, {}, true};
               }
-            return {{}, number};
+            return {{}, std::strtod(&text[begin], nullptr)};
           }
-        const std::size_t begin = at;
-        const std::string name  = identifier_at(text, begin);
+        const std::string name = identifier_at(text, begin);
+        require(!name.empty());
         at += name.size();
-        if (name.empty())
-          throw Unreadable();
         if (takes("("))
           return call(name, begin);
         const auto variable = variables.find(name);
@@ -306,21 +282,18 @@ namespace Viscoplastic
       call(const std::string &name, const std::size_t begin)
       {
         std::vector<Value> arguments;
-        if (next() != ')')
-          do
+        while (!takes(")"))
+          {
+            require(arguments.empty() || takes(","));
             arguments.push_back(choice());
-          while (takes(","));
-        if (!takes(")"))
-          throw Unreadable();
+          }
         const std::size_t n = arguments.size();
         if (n == 1 && of_pure_numbers.count(name) > 0)
           {
-            if (arguments[0].dimension &&
-                !(*arguments[0].dimension == Dimension()))
-              throw Contradiction{
-                "'" + excerpt(text.substr(begin, at - begin)) +
-                "' is a function of " + in_words(*arguments[0].dimension) +
-                ", but '" + name + "' takes a pure number"};
+            if (!is_pure(arguments[0]))
+              refuse(part(begin) + " is a function of " +
+                     in_words(*arguments[0].dimension) + ", but '" + name +
+                     "' takes a pure number");
             return pure_number;
           }
         if (n > 0 && of_equals.count(name) > 0)
@@ -391,9 +364,9 @@ namespace Viscoplastic
                       "; t has a unit here, t/(1 h) has none" :
                       "");
         }
-      catch (const Contradiction &contradiction)
+      catch (const ExceptionBase &contradiction)
         {
-          return contradiction.words;
+          return reason(contradiction);
         }
       catch (const Unreadable &)
         {} // the parser of expressions reports the error

@@ -8,7 +8,6 @@
 #include <viscoplastic_contact/parameters/wrong_lines.h>
 
 #include <map>
-#include <set>
 #include <sstream>
 
 namespace Viscoplastic
@@ -25,9 +24,7 @@ namespace Viscoplastic
     const std::vector<std::string> scene{"Boundary 0/Role=clamped",
                                          "Boundary 1/Role=free",
                                          "Boundary 2/Role=free",
-                                         "Boundary 3/Role=free",
-                                         "Material 1/Law=elastic",
-                                         "Table 1/File="};
+                                         "Boundary 3/Role=free"};
 
     const std::string introduction =
       "Entries that are left out have their defaults. Units are any consistent "
@@ -62,135 +59,14 @@ namespace Viscoplastic
 
 
 
-    std::vector<std::string>
-    split_paragraphs(const std::string &text)
-    {
-      std::vector<std::string> paragraphs(1);
-      std::istringstream       lines(text);
-      std::string              line;
-      while (std::getline(lines, line))
-        if (line.empty())
-          paragraphs.emplace_back();
-        else
-          paragraphs.back() += (paragraphs.back().empty() ? "" : " ") + line;
-      return paragraphs;
-    }
-
-
-
-    /// Break a text into lines that begin with @p margin.
+    /// Break a text into comment lines.
     std::string
-    wrap(const std::string &text, const std::string &margin)
+    comment(const std::string &text)
     {
       std::string result;
-      for (const std::string &line :
-           Utilities::break_text_into_lines(text, 78 - margin.size()))
-        result += margin + line + '\n';
+      for (const std::string &line : Utilities::break_text_into_lines(text, 76))
+        result += "# " + line + '\n';
       return result;
-    }
-
-
-
-    /// An entry or subsection with its paragraphs in the manual.
-    struct Item
-    {
-      std::string              name;
-      const Tree              *node;
-      std::vector<std::string> about;
-    };
-
-
-
-    /// Return the contents of a subsection, entries first. A paragraph on an
-    /// entry that begins with the name of a subsection and a colon is moved to
-    /// that subsection; so the texts of laws come to their parameters.
-    std::vector<Item>
-    items(const Tree &section)
-    {
-      std::vector<Item> entries, subsections;
-      for (const auto &[name, node] : section)
-        (is_entry(node) ? entries : subsections).push_back({name, &node, {}});
-      for (Item &entry : entries)
-        for (const std::string &paragraph :
-             split_paragraphs(entry.node->get<std::string>("documentation")))
-          {
-            std::vector<std::string> *about = &entry.about;
-            for (Item &subsection : subsections)
-              if (paragraph.compare(0,
-                                    subsection.name.size() + 2,
-                                    subsection.name + ": ") == 0)
-                about = &subsection.about;
-            about->push_back(paragraph);
-          }
-      entries.insert(entries.end(), subsections.begin(), subsections.end());
-      return entries;
-    }
-
-
-
-    /// Which entries of a section are printed: all with comments, those that
-    /// differ from their defaults, or all without comments.
-    enum class Style
-    {
-      explained,
-      changed,
-      all
-    };
-
-    /// Print a section in lines that begin with @p margin.
-    void
-    print_section(std::ostream      &out,
-                  const Tree        &section,
-                  const std::string &margin,
-                  const Style        style)
-    {
-      const auto comment = [&](const std::string &text) {
-        if (style == Style::explained)
-          out << wrap(text, margin + "# ");
-      };
-      bool is_first = true;
-      for (const auto &[name, node, about] : items(section))
-        {
-          const bool begins_with_blank_line =
-            style == Style::explained && !(is_first && is_entry(*node));
-          if (is_entry(*node))
-            {
-              const auto value    = node->get<std::string>("value"),
-                         standard = node->get<std::string>("default_value");
-              const std::string allowed =
-                allowed_values(node->get<std::string>("pattern_description"));
-              if (style == Style::changed && value == standard)
-                continue;
-              out << (begins_with_blank_line ? "\n" : "");
-              for (const std::string &paragraph : about)
-                comment(paragraph);
-              // For texts, the description says which are allowed.
-              comment(
-                "Default: " + (standard.empty() ? "empty" : standard) +
-                (allowed == "any text" ? "." : "; allowed: " + allowed + "."));
-              out << margin << "set " << name << " ="
-                  << (value.empty() ? "" : " ") << value << '\n';
-            }
-          else if (style != Style::changed)
-            {
-              out << (begins_with_blank_line ? "\n" : "");
-              for (const std::string &paragraph : about)
-                comment(paragraph);
-              out << margin << "subsection " << name << '\n';
-              print_section(out, *node, margin + "  ", style);
-              out << margin << "end\n";
-            }
-          is_first = false;
-        }
-    }
-
-
-
-    /// Return the name of a section without its number.
-    std::string
-    kind_of(const std::string &name)
-    {
-      return name.substr(0, name.find_last_not_of("0123456789") + 1);
     }
 
 
@@ -219,49 +95,17 @@ namespace Viscoplastic
     std::ostringstream out;
     out << "# All parameters of viscoplastic_contact " << program_version
         << "\n#\n"
-        << wrap(introduction, "# ") << "#\n"
-        << wrap("`#' begins a comment, a backslash at the end of a line "
-                "continues it, `include other.prm' reads another file. This "
-                "file is itself a scene, " +
-                  std::string(files.empty() ? "a square at rest" :
-                                              "the one that was given") +
-                  ": change it, and delete what should keep its default.",
-                "# ")
-        << '\n';
-    const Tree tree = parameters.entries_as_written();
-    Tree       top;
-    for (const auto &child : tree)
-      if (is_entry(child.second))
-        top.push_back(child);
-    print_section(out, top, "", Style::explained);
-    // Without files, only the first section of each numbered kind is explained;
-    // the sections of a given scene may have different values.
-    std::set<std::string> explained;
-    for (const auto &[name, section] : tree)
-      {
-        if (is_entry(section))
-          continue;
-        out << '\n';
-        const auto about = about_sections.find(name);
-        if (about != about_sections.end())
-          out << wrap(about->second, "# ");
-        if (files.empty() &&
-            (name == described_material || name == described_table))
-          {
-            out << "#\n# subsection " << name << '\n';
-            print_section(out, section, "#   ", Style::all);
-            out << "# end\n";
-            continue;
-          }
-        out << "subsection " << name << '\n';
-        print_section(out,
-                      section,
-                      "  ",
-                      !files.empty() || explained.insert(kind_of(name)).second ?
-                        Style::explained :
-                        Style::changed);
-        out << "end\n";
-      }
+        << comment(introduction) << "#\n"
+        << comment("`#' begins a comment, a backslash at the end of a line "
+                   "continues it, `include other.prm' reads another file. This "
+                   "file is itself a scene, " +
+                   std::string(files.empty() ? "a square at rest" :
+                                               "the one that was given") +
+                   ": change it, and delete what should keep its default.");
+    for (const auto &[name, about] : about_sections)
+      out << "#\n" << comment('`' + name + "': " + about);
+    out << '\n';
+    parameters.print(out, /* is_explained = */ true);
     return out.str();
   }
 

@@ -359,34 +359,51 @@ namespace Viscoplastic
 
 
   void
-  Parameters::print(std::ostream &out) const
+  Parameters::print(std::ostream &out, const bool is_explained) const
   {
-    if (as_written.empty())
+    if (as_written.empty() && !is_explained)
       {
         handler.print_parameters(out, ParameterHandler::Text);
         return;
       }
     // A handler that accepts any text, such as numbers with units.
-    ParameterHandler                        record;
-    const std::function<void(const Tree &)> declare_all =
-      [&](const Tree &section) {
+    ParameterHandler      record;
+    std::set<std::string> kinds; // names of sections without their numbers
+    const std::function<void(const Tree &, const bool)> declare_all =
+      [&](const Tree &section, const bool with_defaults) {
         for (const auto &[name, node] : section)
           if (is_entry(node))
             {
-              record.declare_entry(name,
-                                   node.get<std::string>("default_value"),
-                                   Patterns::Anything(),
-                                   node.get<std::string>("documentation"));
-              record.set(name, node.get<std::string>("value"));
+              const auto value    = node.get<std::string>("value"),
+                         standard = node.get<std::string>("default_value");
+              auto about          = node.get<std::string>("documentation");
+              if (!with_defaults && value == standard)
+                continue;
+              const std::string allowed =
+                allowed_values(node.get<std::string>("pattern_description"));
+              if (is_explained) // for texts, it says which are allowed
+                about +=
+                  "\nDefault: " + (standard.empty() ? "empty" : standard) +
+                  (allowed == "any text" ? "." : "; allowed: " + allowed + '.');
+              record.declare_entry(name, standard, Patterns::Anything(), about);
+              record.set(name, value);
             }
           else
             {
-              const Subsection subsection(record, name);
-              declare_all(node);
+              const Subsection  subsection(record, name);
+              const std::string kind =
+                name.substr(0, name.find_last_not_of("0123456789") + 1);
+              declare_all(node,
+                          with_defaults && (!is_explained || !file.empty() ||
+                                            kinds.insert(kind).second));
             }
       };
-    declare_all(entries_as_written());
-    record.print_parameters(out, ParameterHandler::Text);
+    declare_all(entries_as_written(), true);
+    record.print_parameters(out,
+                            is_explained ?
+                              ParameterHandler::Text |
+                                ParameterHandler::KeepDeclarationOrder :
+                              ParameterHandler::Text);
   }
 
 

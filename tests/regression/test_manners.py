@@ -146,7 +146,7 @@ class Description(Manners):
 
         self.assertEqual(entries(record), entries(described))
         # each with its default in a comment before it
-        blocks = re.findall(r"((?:^ *#.*\n)+)^ *set (.*?) =", described, re.M)
+        blocks = re.findall(r"((?:^ *#.*\n)+)^ *set (.*?) *=", described, re.M)
         self.assertLessEqual(entries(record), {f"set {name}" for _, name in blocks})
         for comment, name in blocks:
             self.assertIn("Default:", comment, name)

@@ -596,7 +596,8 @@ class OtherUnits(TestCase):
             files = scene_file(scene), "more.prm"
             process = run_program(("--describe", *files), 1, Path(work))
         self.assertEqual(process.returncode, 0, process.stderr)
-        described = process.stdout
+        described = re.sub(r" +# default: .*", "", process.stdout)
+        described = re.sub(r"(?m)^( *set .*?) +=", r"\1 =", described)
         dimension = int(re.search(r"set Dimension = (\d)", described)[1])
         if re.search(r"set Plane model = axisymmetric", described):
             dimension = 3  # forces and energies of whole bodies

@@ -73,7 +73,7 @@ namespace Viscoplastic
     /// Print a parameter file with every entry and the units of numbers in the
     /// files: the record of a run.
     void
-    print(std::ostream &out) const;
+    print(std::ostream &out, const bool is_explained = false) const;
 
     /// Return all entries like declared_entries(), but with values as in the
     /// files.

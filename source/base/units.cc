@@ -1,13 +1,15 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 
+#include <deal.II/base/utilities.h>
+
 #include <viscoplastic_contact/base/messages.h>
 #include <viscoplastic_contact/base/units.h>
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <cstdlib>
 #include <map>
+#include <regex>
 
 namespace Viscoplastic
 {
@@ -81,14 +83,6 @@ namespace Viscoplastic
 
 
 
-    bool
-    is_digit(const char c)
-    {
-      return std::isdigit(static_cast<unsigned char>(c)) != 0;
-    }
-
-
-
     /// Reads a text from left to right.
     struct Cursor
     {
@@ -124,30 +118,23 @@ namespace Viscoplastic
         return i != std::string::npos && text[i] == '(';
       }
 
-      /// Read the exponent of a unit, `^-5' or `^(-5)'; 1 if there is none.
+      /// Read the exponent of a unit, `^-5' or `^(-5)'; 1 if there is none, or
+      /// if it is none, which the parser of the expression reports.
       double
       exponent()
       {
-        const std::size_t begin = at;
-        if (next() != '^')
+        static const std::regex number("\\^(?:([-+]?[0-9.]+)|"
+                                       "\\(([-+]?[0-9.]+)\\))");
+        std::smatch             found;
+        if (!std::regex_search(text.begin() + at,
+                               text.end(),
+                               found,
+                               number,
+                               std::regex_constants::match_continuous))
           return 1.;
-        ++at;
-        const bool has_parentheses = next() == '(';
-        at += has_parentheses ? 1 : 0;
-        const std::size_t first = at;
-        if (next() == '-' || next() == '+')
-          ++at;
-        while (is_digit(next()) || next() == '.')
-          ++at;
-        const std::string digits = text.substr(first, at - first);
-        const bool        closes = !has_parentheses || next() == ')';
-        if (std::none_of(digits.begin(), digits.end(), is_digit) || !closes)
-          {
-            at = begin; // the parser of the expression reports the error
-            return 1.;
-          }
-        at += has_parentheses ? 1 : 0;
-        return std::strtod(digits.c_str(), nullptr);
+        at += found.length();
+        return std::strtod(found.str(found[1].matched ? 1 : 2).c_str(),
+                           nullptr);
       }
     };
 
@@ -159,40 +146,17 @@ namespace Viscoplastic
     std::optional<Unit>
     read_group(Cursor &cursor)
     {
-      const std::size_t begin = cursor.at;
-      Unit              result{"", {}, 1.};
-      double            sign = 1.;
-      if (cursor.next() == '(')
-        do
-          {
-            ++cursor.at;
-            cursor.skip_blanks();
-            const Unit *unit = find_unit(cursor.word());
-            if (unit == nullptr)
-              break;
-            const double exponent = sign * cursor.exponent();
-            result.dimension =
-              result.dimension * unit->dimension.power(exponent);
-            result.si *= std::pow(unit->si, exponent);
-            const std::size_t end = cursor.at;
-            cursor.skip_blanks();
-            if (cursor.next() == ')')
-              {
-                ++cursor.at;
-                return result;
-              }
-            sign = cursor.next() == '/' ? -1. : 1.;
-            // A blank also stands for a product.
-            if (cursor.next() != '/' && cursor.next() != '*')
-              {
-                if (cursor.at == end)
-                  break;
-                --cursor.at;
-              }
-          }
-        while (true);
-      cursor.at = begin;
-      return {};
+      const std::size_t end = cursor.text.find(')', cursor.at);
+      if (cursor.next() != '(' || end == std::string::npos)
+        return {};
+      const std::string inside =
+        ' ' +
+        Utilities::trim(cursor.text.substr(cursor.at + 1, end - cursor.at - 1));
+      const auto found = read_unit(inside, 0);
+      if (!found || found->end != inside.size())
+        return {};
+      cursor.at = end + 1;
+      return found->unit;
     }
 
 

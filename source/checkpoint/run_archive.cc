@@ -9,6 +9,7 @@
 #include <boost/serialization/vector.hpp>
 
 #include <numeric>
+#include <regex>
 #include <sstream>
 
 namespace Viscoplastic
@@ -158,53 +159,26 @@ namespace Viscoplastic
 
 
 
-    /// Whether an entry determines the unknowns or their meaning.
+    /// Whether an entry determines the unknowns or their meaning. Meshes and
+    /// tables are compared by checksums, not by the names of their files.
     bool
     is_fixed(const std::string &path)
     {
-      const std::size_t slash   = path.find('/');
-      const std::string section = path.substr(0, slash),
-                        entry   = slash == std::string::npos ?
-                                    "" :
-                                    path.substr(slash + 1);
-      const auto is_one_of = [&entry](const std::vector<std::string> &names) {
-        return std::find(names.begin(), names.end(), entry) != names.end();
-      };
-      const std::string kind = section.substr(0, section.find(' '));
-      // Meshes are compared themselves, not the names of files.
-      if (section == "Geometry")
-        return entry != "File";
-      if (kind == "Material")
-        return is_one_of({"Young's modulus",
-                          "Poisson's ratio",
-                          "Voigt matrix",
-                          "Law",
-                          "Thermal expansion",
-                          "Added at",
-                          "Removed at",
-                          "Volumetric integration",
-                          "Stress history"});
-      // Files are compared by checksums.
-      if (kind == "Table")
-        return entry != "File";
-      if (kind == "Boundary")
-        return is_one_of({"Role",
-                          "Contact law",
-                          "Against",
-                          "Foundation normal",
-                          "Friction law",
-                          "Normal stiffness",
-                          "Tangential stiffness"}) ||
-               find_named(entries_of(contact_laws()), entry) != nullptr;
-      return section == "Initial state" || section == "Dimension" ||
-             section == "Units" || section == "Supports" ||
-             path == "Temperature/Reference temperature" ||
-             path == "Mesh refinement/Strategy" || path == "Output/Points" ||
-             path == "Output/Point fields" || path == "Output/Lines" ||
-             path == "Output/Line fields" || path == "Output/Integrals" ||
-             path == "Output/Fields in HDF5" ||
-             path == "Error control/Error bar" ||
-             path == "Error control/Quantity";
+      static const std::regex fixed(
+        "Dimension|(Units|Supports|Initial state)/.*|"
+        "(Geometry|Table [0-9]+)/(?!File$).*|"
+        "Material[^/]*/(Young's modulus|Poisson's ratio|Voigt matrix|Law|"
+        "Thermal expansion|Added at|Removed at|Volumetric integration|"
+        "Stress history)|"
+        "Boundary[^/]*/(Role|Contact law|Against|Foundation normal|"
+        "Friction law|Normal stiffness|Tangential stiffness)|"
+        "Temperature/Reference temperature|Mesh refinement/Strategy|"
+        "Output/(Points|Point fields|Lines|Line fields|Integrals|"
+        "Fields in HDF5)|Error control/(Error bar|Quantity)");
+      return std::regex_match(path, fixed) ||
+             (path.compare(0, 8, "Boundary") == 0 &&
+              find_named(entries_of(contact_laws()),
+                         path.substr(path.find('/') + 1)) != nullptr);
     }
 
 

@@ -5,12 +5,12 @@
 #include <viscoplastic_contact/base/messages.h>
 #include <viscoplastic_contact/base/source_directory.h>
 
-#include <boost/crc.hpp>
 #include <fcntl.h>
 #include <nlohmann/json.hpp>
 #include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
+#include <zlib.h>
 
 #include <algorithm>
 #include <cerrno>
@@ -329,9 +329,9 @@ namespace Viscoplastic
   std::uint32_t
   checksum(const std::string &bytes)
   {
-    boost::crc_32_type crc;
-    crc.process_bytes(bytes.data(), bytes.size());
-    return crc.checksum();
+    return crc32_z(0,
+                   reinterpret_cast<const Bytef *>(bytes.data()),
+                   bytes.size());
   }
 
 

@@ -118,9 +118,10 @@ namespace Viscoplastic
     std::vector<std::size_t>
     order_of_p4est(const AdmissibleSpace<dim> &space)
     {
-      std::multimap<types::coarse_cell_id, std::size_t> by_tree;
-      for (std::size_t i = 0; i < space.cells.size(); ++i)
-        by_tree.emplace(space.cells[i]->id().get_coarse_cell_id(), i);
+      std::vector<std::pair<types::coarse_cell_id, std::size_t>> by_tree;
+      for (const auto &cell : space.cells)
+        by_tree.emplace_back(cell->id().get_coarse_cell_id(), by_tree.size());
+      std::sort(by_tree.begin(), by_tree.end());
       std::vector<std::size_t> result;
       for (const auto &entry : by_tree)
         result.push_back(entry.second);
@@ -244,8 +245,11 @@ namespace Viscoplastic
       state,
       truncations,
       squared_estimate,
-      [&]() { result.emplace_back(); },
-      [&](const double value) { result.back().push_back(value); });
+      [&]() { result.sizes.push_back(0); },
+      [&](const double value) {
+        result.values.push_back(value);
+        ++result.sizes.back();
+      });
     return result;
   }
 
@@ -276,9 +280,9 @@ namespace Viscoplastic
            {&truncation->projector, &truncation->spring, &truncation->tilt})
         blocks->resize(face ? face->layout().n_nodes() : 0);
 
-    bool        fits = packed.size() == space.cells.size();
-    auto        cell = packed.begin();
-    std::size_t next = 0;
+    bool        fits = packed.sizes.size() == space.cells.size();
+    auto        size = packed.sizes.begin();
+    std::size_t next = 0, end = 0; // of the values of a cell
     if (fits)
       for_each_value(
         stress_space,
@@ -287,15 +291,15 @@ namespace Viscoplastic
         truncations,
         squared_estimate,
         [&]() {
-          fits = fits && (cell == packed.begin() || next == (cell - 1)->size());
-          ++cell;
-          next = 0;
+          fits = fits && next == end;
+          end += *size++;
         },
         [&](auto &value) {
-          fits = fits && next < (cell - 1)->size();
+          fits = fits && next < end;
           if (fits)
-            value = (*(cell - 1))[next++];
+            value = packed.values[next++];
         });
+    fits = fits && next == packed.values.size();
     if (Utilities::MPI::logical_or(!fits, space.communicator))
       refuse("its fields do not fit the scene");
 

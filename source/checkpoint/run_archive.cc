@@ -258,22 +258,25 @@ namespace Viscoplastic
     StepperMemory<dim> memory = time_stepper.memory();
     const State<dim>   of_quantity =
       fields_of_quantity<dim>(memory.quantity, state.contact);
-    ArchivedData data{Utilities::MPI::gather(communicator,
-                                             pack_mesh(triangulation)),
+    const auto mesh = pack_mesh(triangulation);
+    using Meshes    = std::vector<std::vector<unsigned int>>;
+    ArchivedData data{Utilities::MPI::n_mpi_processes(communicator) == 1 ?
+                        Meshes{mesh} : // gather() would compress it
+                        Utilities::MPI::gather(communicator, mesh),
                       {{fields_present(state, communicator),
                         fields_present(of_quantity, communicator)}},
                       indicators.size() > 0,
                       run.accepted.is_solution,
                       output_times,
                       run.recorder.elapsed_in_all()};
-    PackedRun    packed{{state.n,
-                         state.t,
-                         Utilities::MPI::n_mpi_processes(communicator),
-                         version,
-                         values_with_files(run.scene.parameters, triangulation),
-                         {}},
+    PackedRun  packed{{state.n,
+                       state.t,
+                       Utilities::MPI::n_mpi_processes(communicator),
+                       version,
+                       values_with_files(run.scene.parameters, triangulation),
+                       {}},
                      {}};
-    const auto   write = [&packed](const std::string &name, const auto &act) {
+    const auto write = [&packed](const std::string &name, const auto &act) {
       std::ostringstream              bytes;
       boost::archive::binary_oarchive archive(bytes);
       act(archive);
@@ -362,9 +365,16 @@ namespace Viscoplastic
                 store.read(checkpoint, file_of_rank(kind, r)));
               CellValues part;
               boost::archive::binary_iarchive(bytes) >> part;
-              for (std::size_t i = 0; i < part.size(); ++i)
+              auto value = part.values.begin();
+              for (std::size_t i = 0; i < part.sizes.size();
+                   value += part.sizes[i++])
                 if (begin <= first + i && first + i < end)
-                  result.push_back(std::move(part[i]));
+                  {
+                    result.sizes.push_back(part.sizes[i]);
+                    result.values.insert(result.values.end(),
+                                         value,
+                                         value + part.sizes[i]);
+                  }
             }
           first += n;
         }

@@ -7,6 +7,7 @@
 #include <viscoplastic_contact/discretization/contact_face.h>
 #include <viscoplastic_contact/discretization/state.h>
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -45,8 +46,19 @@ namespace Viscoplastic
   std::vector<bool>
   fields_present(const State<dim> &state, const MPI_Comm communicator);
 
-  /// Numbers by cell, and the number of owned cells by rank.
-  using CellValues = std::vector<std::vector<double>>;
+  /// Numbers, cell by cell, and how many each cell has.
+  struct CellValues
+  {
+    std::vector<double>        values;
+    std::vector<std::uint32_t> sizes;
+
+    template <typename Archive>
+    void
+    serialize(Archive &archive, const unsigned int)
+    {
+      archive &values &sizes;
+    }
+  };
 
   /// The values at the owned cells: fields of @p state, the contact points of
   /// @p face (null without) and truncations of it, and the @p squared_estimate

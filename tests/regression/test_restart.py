@@ -344,6 +344,11 @@ class OtherRanks(RestartCase):
         overrides = {"Time/Phases": "1.5: 6", "Mesh refinement/Cell budget": 400}
         self.compare("pad_adaptive", overrides, 3, (2, 1))
 
+    def test_pair(self):
+        """Nodes of one body are tied to those of the other, on whatever rank."""
+        overrides = {"Geometry/Global refinements": 1, "Time/Phases": "2: 4"}
+        self.compare("shrink_fit_2d", overrides, 2, (1, 3))
+
     def test_history_at_quadrature_points(self):
         self.compare("cantilever_creep", {"Time/Phases": "2.6: 10"}, 5, (3, 2))
 

@@ -27,8 +27,11 @@ namespace Viscoplastic
     bool
     is_finished(const fs::path &directory)
     {
-      const auto text = read_file_if_any(directory / manifest_name);
-      return text && text->find(key_of_format) != std::string::npos;
+      const fs::path  manifest = directory / manifest_name;
+      std::error_code none;
+      return fs::is_regular_file(manifest, none) &&
+             read_file_if_any(manifest).value_or("").find(key_of_format) !=
+               std::string::npos;
     }
 
 

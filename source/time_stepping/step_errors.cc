@@ -16,13 +16,16 @@ namespace Viscoplastic
 
 
 
-    /// The change of a state in a step relative to its end: the larger of the
-    /// changes of strain and stress in their energy norms, plus twice the share
-    /// of contact points that begin or cease to stick or to touch. Infinite if
-    /// strain or stress vanish at the end. Collective.
+    /// How much a state has ceased in a step to be in proportion to the state
+    /// before: the distance of strain or stress from @p growth times those
+    /// before, in their energy norms and relative to that, or a part of the
+    /// growth, since bounds, gaps and initial stresses do not grow; and the
+    /// share of contact points that begin or cease to stick or to touch.
+    /// Infinite if strain or stress vanished before. Collective.
     template <int dim>
     double
     change_of_step(const Discretization<dim> &discretization,
+                   const double               growth,
                    const EvaluatedState<dim> &accepted,
                    const EvaluatedState<dim> &end)
     {
@@ -44,23 +47,37 @@ namespace Viscoplastic
           ++sums[1];
       sums[2] = state.contact.n_points();
       Utilities::MPI::sum(sums, discretization.space.communicator, sums);
-      // |sigma|^2 = a(u, u) + 2 (z, eps(u)) + |z|^2, of change and end.
+      // |b - g a|^2/|g a|^2 from the squares of b - a, a and b. Rounding may
+      // make them negative.
+      const auto distance =
+        [&](const double change, const double before, const double after) {
+          return before > 0. ?
+                   (change + (1. - growth) * (after / growth - before)) /
+                     (growth * before) :
+                   std::numeric_limits<double>::infinity();
+        };
+      // |sigma|^2 = a(u, u) + 2 (z, eps(u)) + |z|^2.
+      const auto square_of_stress = [](const Forces<dim> &of) {
+        return 2. * (of.strain_energy + of.irreversible_work +
+                     of.irreversible_energy);
+      };
       const ErrorEstimate &errors = end.errors;
       const double         strain = state.k * state.k * errors.velocity_square,
-                   energy         = 2. * forces.strain_energy;
-      // Rounding may make differences and energies negative.
-      const auto share = [](const double part, const double whole) {
-        return whole > 0. ? std::sqrt(std::max(part, 0.) / whole) :
-                            std::numeric_limits<double>::infinity();
-      };
-      // Points count twice, since dual solutions jump when they change.
-      return std::max(share(strain, energy),
-                      share(strain + 2. * sums[0] +
-                              errors.irreversible_change *
-                                errors.irreversible_change,
-                            energy + 2. * (forces.irreversible_work +
-                                           forces.irreversible_energy))) +
-             (sums[2] > 0. ? 2. * sums[1] / sums[2] : 0.);
+                   stress =
+                     strain + 2. * sums[0] +
+                     errors.irreversible_change * errors.irreversible_change;
+      // A quantity feels both more: its dual solution jumps with points.
+      const bool   has_dual  = discretization.scene().quantity.has_value();
+      const double of_growth = (has_dual ? 1. : 0.25) * (1. - 1. / growth),
+                   of_points = has_dual ? 2. : 1.;
+      return std::sqrt(std::max({of_growth * of_growth,
+                                 distance(strain,
+                                          2. * old_forces.strain_energy,
+                                          2. * forces.strain_energy),
+                                 distance(stress,
+                                          square_of_stress(old_forces),
+                                          square_of_stress(forces))})) +
+             (sums[2] > 0. ? of_points * sums[1] / sums[2] : 0.);
     }
 
 
@@ -270,22 +287,25 @@ namespace Viscoplastic
   TimeStepper<dim>::growth_since_estimate(const EvaluatedState<dim> &accepted,
                                           EvaluatedState<dim>       &end) const
   {
-    // Excluded are sums, which have a new dual problem in each step, cell
-    // means, whose error adds up, and curved contact, of which checkpoints do
-    // not keep all.
+    // Excluded are sums, which have a new dual problem in each step, rates of
+    // nonlinear laws, whose errors add up and are in no proportion, and curved
+    // contact, of which checkpoints do not keep all.
     if (error_estimator == nullptr || !accepted.is_solution ||
-        accepted.state.k == 0. || accepted.space_estimate.rate_defect > 0. ||
+        accepted.state.k == 0. ||
+        (accepted.space_estimate.rate_defect > 0. &&
+         !discretization.laws.have_constant_tangents()) ||
         space_estimator->has_curved_contact() ||
         (scene.quantity && scene.quantity->is_sum()))
       return {};
-    const double since = accepted.errors.since_estimate +
-                         change_of_step(discretization, accepted, end);
-    const double growth =
-      end.forces.strain_energy / accepted.forces.strain_energy;
+    const double growth = std::sqrt(end.forces.strain_energy /
+                                    accepted.forces.strain_energy),
+                 since  = accepted.errors.since_estimate +
+                         change_of_step(discretization, growth, accepted, end);
+    // Without strain there is no growth.
     if (!(since <= largest_change && growth > 0.))
       return {};
     end.errors.since_estimate = since;
-    return std::sqrt(growth);
+    return growth;
   }
 
 

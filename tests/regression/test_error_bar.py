@@ -705,6 +705,7 @@ class Restart(TestCase):
         with Job("slab", {**scene, **EVERY_STEP}) as job:
             reference = job.run(ranks=ranks)
             rows = without_wall_times(reference.directory / "statistics.csv")
+            columns = reference.statistics
             record = without_clocks(reference.info)
             for n in 5, 11:
                 with Job("slab", {**scene, **EVERY_STEP}, copy_of=job) as again:
@@ -714,6 +715,7 @@ class Restart(TestCase):
                         without_wall_times(result.directory / "statistics.csv"), rows
                     )
                     self.assertEqual(without_clocks(result.info), record)
+        return columns
 
     def test_bit_by_bit(self):
         self.check(1)
@@ -723,8 +725,18 @@ class Restart(TestCase):
         self.check(2)
 
     def test_bit_by_bit_on_one_mesh(self):
-        """What a new mesh makes anew must come from the checkpoint here."""
-        self.check(1, **{"Mesh refinement/Strategy": "none"})
+        """What a new mesh makes anew must come from the checkpoint here, as an
+        estimate to which the next ones are in proportion: the mesh and, in linear
+        laws, what cell means do to the rate."""
+        fixed = {"Mesh refinement/Strategy": "none", "Time/Phases": "1: 16, 2: 16"}
+        result = self.check(1, **fixed)
+        size = result["energy_norm"][1:]
+        share, rate = result["estimate_space"][1:], np.diff(result["estimate_history"])
+        share, rate = share / size, rate / size
+        kept = np.abs(np.diff(share)) < 1e-9 * share[1:]
+        self.assertTrue(kept[12 - 2], "the step after the second restart")
+        self.assertGreater(kept.sum(), 6)
+        self.assertClose(rate[1:][kept], rate[:-1][kept], 1e-6)
 
     def test_the_error_bar_cannot_change(self):
         with Job("slab", {**SLAB, **EVERY_STEP}) as job:

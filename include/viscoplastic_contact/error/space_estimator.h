@@ -32,6 +32,7 @@ namespace Viscoplastic
     scale(const double factor)
     {
       total *= factor;
+      rate_defect *= factor;
       if (squared_indicators.size() > 0)
         squared_indicators *= factor * factor;
     }

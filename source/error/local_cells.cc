@@ -158,20 +158,21 @@ namespace Viscoplastic
   {
     const Shape                                &shape = shapes[cell.shape];
     std::array<SymmetricTensor<2, 3>, n_points> result;
-    double                                      mean = 0.;
     for (unsigned int q = 0; q < n_points; ++q)
-      {
-        result[q] = strain(gradient(displacements, shape.gradients[q]),
-                           strain_zz(displacements, shape.hoops[q]));
-        mean += trace(result[q]) * shape.weights[q] / shape.volume;
-      }
-    const bool dilates = stress_space.mean_dilatation;
+      result[q] = strain(gradient(displacements, shape.gradients[q]),
+                         strain_zz(displacements, shape.hoops[q]));
+    if (dilatations != nullptr)
+      std::fill_n(dilatations, n_points, 0.);
+    if (!stress_space.mean_dilatation)
+      return result;
+    double mean = 0.;
+    for (unsigned int q = 0; q < n_points; ++q)
+      mean += trace(result[q]) * shape.weights[q] / shape.volume;
     for (unsigned int q = 0; q < n_points; ++q)
       {
         if (dilatations != nullptr)
-          dilatations[q] = dilates ? trace(result[q]) - mean : 0.;
-        if (dilates)
-          result[q] = with_dilatation(result[q], mean);
+          dilatations[q] = trace(result[q]) - mean;
+        result[q] = with_dilatation(result[q], mean);
       }
     return result;
   }

@@ -110,35 +110,42 @@ namespace Viscoplastic
       const StressSpace<dim> &stress_space = laws.stress_space;
       const MPI_Comm          communicator = stress_space.space.communicator;
       Assert(stress_space.n_samples == 1, ExcInternalError());
-      const auto now    = laws.at(state.t, state.history);
-      double     square = 0.;
+      const auto             now    = laws.at(state.t, state.history);
+      double                 square = 0.;
+      SymmetricTensor<4, 3>  rate_of_strain;
+      const ViscoplasticLaw *last_law       = nullptr;
+      const Stiffness       *last_stiffness = nullptr;
       fail_together(communicator, [&] {
         for (unsigned int c = 0; c < stress_space.n_cells(); ++c)
           {
             const ViscoplasticLaw *law = now.law(c);
             if (law == nullptr)
               continue;
-            const auto    &cell    = cells.cells[c];
-            const auto    &weights = cells.shapes[cell.shape].weights;
-            const LawPoint point   = now.point(c, 0);
-            const auto     strains =
+            const auto      &cell      = cells.cells[c];
+            const auto      &weights   = cells.shapes[cell.shape].weights;
+            const Stiffness &stiffness = stress_space.moduli(c);
+            const auto       strains =
               cells.strains(cell, cells.displacements(cell, state.u.begin()));
             SymmetricTensor<2, 3> mean;
             for (unsigned int q = 0; q < strains.size(); ++q)
               mean += strains[q] * (weights[q] / stress_space.volume(c));
-            const auto tangents =
-              law->tangents(cell.stiffness.stress(mean) + state.z[c],
-                            now.mechanical(mean, c, 0),
-                            cell.stiffness,
-                            point);
-            for (unsigned int q = 0; q < strains.size(); ++q)
+            // In most bodies that of linear laws is the same in all cells.
+            if (law != last_law || &stiffness != last_stiffness ||
+                !law->has_constant_tangents() || now.varies_in_space(c))
               {
-                const SymmetricTensor<2, 3> change = strains[q] - mean;
-                square += weights[q] *
-                          cell.stiffness.complementary_square(
-                            tangents.stress * cell.stiffness.stress(change) +
-                            tangents.strain * change);
+                const auto tangents =
+                  law->tangents(stiffness.stress(mean) + state.z[c],
+                                now.mechanical(mean, c, 0),
+                                stiffness,
+                                now.point(c, 0));
+                rate_of_strain =
+                  tangents.stress * stiffness.tensor() + tangents.strain;
+                last_law       = law;
+                last_stiffness = &stiffness;
               }
+            for (unsigned int q = 0; q < strains.size(); ++q)
+              square += weights[q] * stiffness.complementary_square(
+                                       rate_of_strain * (strains[q] - mean));
           }
       });
       return std::sqrt(Utilities::MPI::sum(square, communicator));

@@ -20,7 +20,9 @@ namespace Viscoplastic
           distance += Utilities::fixed_power<2>(value[i] - 0.5 * (a[i] + b[i]));
           diameter += Utilities::fixed_power<2>(a[i] - b[i]);
         }
-      return std::max(0., std::sqrt(distance) - 0.5 * std::sqrt(diameter));
+      if (distance <= 0.25 * diameter)
+        return 0.;
+      return std::sqrt(distance) - 0.5 * std::sqrt(diameter);
     }
 
 

@@ -89,6 +89,19 @@ namespace Viscoplastic
     }
 
 
+
+    double
+    largest_entry(const IrreversibleStress &z)
+    {
+      double result = 0.;
+      for (const auto &at_sample : z)
+        for (unsigned int e = 0; e < 6; ++e)
+          result = std::max(result, std::fabs(at_sample.access_raw_entry(e)));
+      return result;
+    }
+
+
+
     /// Return the true part of backward Euler's defect k (G_n - G_{n-1})/2 if G
     /// decays exponentially, by its relaxation 1/(1 + x): to 15 %, the exact
     /// part 2 (1 + x) (1 - (1 + x) exp(-x))/x^2.
@@ -172,14 +185,10 @@ namespace Viscoplastic
       add()
       {
         state.time_error.resize(state.z.size());
-        double largest = 0.;
-        for (std::size_t i = 0; i < state.z.size(); ++i)
-          for (unsigned int e = 0; e < 6; ++e)
-            largest =
-              std::max({largest,
-                        std::fabs(state.z[i].access_raw_entry(e)),
-                        k * std::fabs(end.rate->rate[i].access_raw_entry(e))});
-        largest = Utilities::MPI::max(largest, stress_space.space.communicator);
+        const double largest =
+          Utilities::MPI::max(std::max(largest_entry(state.z),
+                                       k * largest_entry(end.rate->rate)),
+                              stress_space.space.communicator);
         state.time_error_unit =
           largest > 0. ? std::ldexp(1., std::ilogb(largest)) : 1.;
         state.rate_slope    = accepted.rate_slope;

@@ -20,9 +20,7 @@ namespace Viscoplastic
           distance += Utilities::fixed_power<2>(value[i] - 0.5 * (a[i] + b[i]));
           diameter += Utilities::fixed_power<2>(a[i] - b[i]);
         }
-      if (distance <= 0.25 * diameter)
-        return 0.;
-      return std::sqrt(distance) - 0.5 * std::sqrt(diameter);
+      return std::max(0., std::sqrt(distance) - 0.5 * std::sqrt(diameter));
     }
 
 
@@ -83,7 +81,12 @@ namespace Viscoplastic
           double square = 0.;
           for (unsigned int d = 0; d < dim; ++d)
             square += Utilities::fixed_power<2>(value[i + d]);
-          add(beyond(value + i, left + i, right + i, dim), square);
+          // Most data are the same at all times.
+          const bool varies =
+            !std::equal(value + i, value + i + dim, left + i) ||
+            !std::equal(value + i, value + i + dim, right + i);
+          add(varies ? beyond(value + i, left + i, right + i, dim) : 0.,
+              square);
         }
     }
 

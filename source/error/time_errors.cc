@@ -93,11 +93,13 @@ namespace Viscoplastic
     double
     largest_entry(const IrreversibleStress &z)
     {
-      double result = 0.;
+      // One by one, entries would wait for each other.
+      std::array<double, 6> result{};
       for (const auto &at_sample : z)
         for (unsigned int e = 0; e < 6; ++e)
-          result = std::max(result, std::fabs(at_sample.access_raw_entry(e)));
-      return result;
+          result[e] =
+            std::max(result[e], std::fabs(at_sample.access_raw_entry(e)));
+      return *std::max_element(result.begin(), result.end());
     }
 
 

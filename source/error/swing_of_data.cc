@@ -81,12 +81,7 @@ namespace Viscoplastic
           double square = 0.;
           for (unsigned int d = 0; d < dim; ++d)
             square += Utilities::fixed_power<2>(value[i + d]);
-          // Most data are the same at all times.
-          const bool varies =
-            !std::equal(value + i, value + i + dim, left + i) ||
-            !std::equal(value + i, value + i + dim, right + i);
-          add(varies ? beyond(value + i, left + i, right + i, dim) : 0.,
-              square);
+          add(beyond(value + i, left + i, right + i, dim), square);
         }
     }
 

@@ -174,18 +174,35 @@ namespace Viscoplastic
                            const unsigned int            l) const
   {
     const Level           &level = levels[l], &below = levels[l - 1];
-    auto                  &fine = level.space->r, &sums = below.space->b;
+    auto                  &sums = below.space->b;
     std::vector<Treatment> result(below.face.size());
+    // Set `sums` at nodes around the face, and of other ranks, to the sum of
+    // the weights of face nodes times value(f).
+    const auto restrict_from_face = [&](const auto &value) {
+      const auto at_parents = [&](const auto &act) {
+        for (unsigned int f = 0; f < level.face.size(); ++f)
+          level.space->for_each_parent(
+            level.face[f].local,
+            [&](const unsigned int parent, const float weight) {
+              act(f, sums.begin() + parent * dim, weight);
+            });
+      };
+      at_parents([](const unsigned int, float *const sum, const float) {
+        std::fill_n(sum, dim, 0.f);
+      });
+      at_parents(
+        [&](const unsigned int f, float *const sum, const float weight) {
+          const auto of_node = value(f);
+          for (unsigned int d = 0; d < of_node.dimension; ++d)
+            sum[d] += weight * static_cast<float>(of_node[d]);
+        });
+      sums.compress(VectorOperation::add);
+    };
 
-    // Sum the weights of sticking and of all face nodes around a coarse one.
-    fine = 0.f;
-    for (unsigned int f = 0; f < level.face.size(); ++f)
-      {
-        float *const value = fine.begin() + level.face[f].local * dim;
-        value[0]           = treatments[f].blocked;
-        value[1]           = 1.f;
-      }
-    level.space->restrict_to_coarse(sums, fine);
+    // The weights of sticking and of all face nodes around a coarse one.
+    restrict_from_face([&](const unsigned int f) {
+      return Point<2>(treatments[f].blocked, 1.);
+    });
     for (unsigned int f = 0; f < below.face.size(); ++f)
       {
         const float *const sum    = sums.begin() + below.face[f].local * dim;
@@ -209,11 +226,9 @@ namespace Viscoplastic
     if (has_springs)
       for (unsigned int j = 0; j < dim; ++j)
         {
-          for (unsigned int f = 0; f < level.face.size(); ++f)
-            for (unsigned int i = 0; i < dim; ++i)
-              fine.begin()[level.face[f].local * dim + i] =
-                treatments[f].spring[i][j];
-          level.space->restrict_to_coarse(sums, fine);
+          restrict_from_face([&](const unsigned int f) {
+            return transpose(treatments[f].spring)[j];
+          });
           for (unsigned int f = 0; f < below.face.size(); ++f)
             for (unsigned int i = 0; i < dim && result[f].blocked < 1.; ++i)
               result[f].spring[i][j] =

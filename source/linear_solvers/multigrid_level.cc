@@ -217,9 +217,10 @@ namespace Viscoplastic
     const float *const f      = fine.begin();
     float *const       target = coarse.begin();
     for (unsigned int i = 0; i < n_owned; ++i)
-      for (std::size_t e = parent_begin[i]; e < parent_begin[i + 1]; ++e)
+      for_each_parent(i, [&](const unsigned int parent, const float weight) {
         for (unsigned int d = 0; d < dim; ++d)
-          target[parents[e] * dim + d] += weights[e] * f[i * dim + d];
+          target[parent * dim + d] += weight * f[i * dim + d];
+      });
     if (!is_serial)
       coarse.compress(VectorOperation::add);
   }
@@ -237,9 +238,10 @@ namespace Viscoplastic
     for (unsigned int i = 0; i < n_owned; ++i)
       {
         float value[dim] = {};
-        for (std::size_t e = parent_begin[i]; e < parent_begin[i + 1]; ++e)
+        for_each_parent(i, [&](const unsigned int parent, const float weight) {
           for (unsigned int d = 0; d < dim; ++d)
-            value[d] += weights[e] * source[parents[e] * dim + d];
+            value[d] += weight * source[parent * dim + d];
+        });
         for (unsigned int d = 0; d < dim; ++d)
           f[i * dim + d] = value[d];
       }

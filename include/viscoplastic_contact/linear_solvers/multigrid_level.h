@@ -94,6 +94,16 @@ namespace Viscoplastic
     void
     restrict_to_coarse(Vector &coarse, const Vector &fine) const;
 
+    /// Call act(parent, weight) for each node of the next coarser level from
+    /// which an owned node interpolates, with its local number there.
+    template <typename Function>
+    void
+    for_each_parent(const unsigned int node, const Function &act) const
+    {
+      for (std::size_t e = parent_begin[node]; e < parent_begin[node + 1]; ++e)
+        act(parents[e], weights[e]);
+    }
+
     /// fine := P coarse; needs ghosts of @p coarse.
     void
     interpolate(Vector &fine, Vector &coarse) const;

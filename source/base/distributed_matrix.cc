@@ -144,27 +144,35 @@ namespace Viscoplastic
     for (unsigned int i = 0; i < pattern->n_owned; ++i)
       for (std::size_t e = pattern->begin[i]; e < pattern->begin[i + 1]; ++e)
         if (is_chosen[i] || is_chosen[pattern->columns[e]])
-          result.push_back({i, e});
+          result.push_back(
+            {i, is_chosen[i], is_chosen[pattern->columns[e]], e});
     return result;
   }
 
 
 
   void
-  DistributedMatrix::vmult(DistributedVector        &y,
-                           const DistributedVector  &x,
-                           const std::vector<Place> &places) const
+  DistributedMatrix::vmult_add(DistributedVector        &y,
+                               const DistributedVector  &x,
+                               const std::vector<Place> &places) const
   {
-    const unsigned int        dim = pattern->dim;
-    const std::vector<double> at  = at_columns(x.begin());
-    y                             = 0.;
-    for (const auto &[i, entry] : places)
+    const unsigned int  dim = pattern->dim;
+    std::vector<double> with_ghosts;
+    const double       *at = x.begin();
+    if (pattern->partitioner->n_mpi_processes() > 1)
+      {
+        with_ghosts = at_columns(x.begin());
+        at          = with_ghosts.data();
+      }
+    for (const auto &[i, row_is_chosen, column_is_chosen, entry] : places)
       {
         const unsigned int j      = pattern->columns[entry];
         const double      *values = block(i, entry);
-        double            *to     = y.begin() + i * dim;
-        (dim == 2 ? add_product<2> : add_product<3>)(values, &at[j * dim], to);
-        if (j != i && j < pattern->n_owned)
+        if (column_is_chosen)
+          (dim == 2 ? add_product<2> : add_product<3>)(values,
+                                                       &at[j * dim],
+                                                       y.begin() + i * dim);
+        if (row_is_chosen && j != i && j < pattern->n_owned)
           (dim == 2 ? add_transposed_product<2> :
                       add_transposed_product<3>)(values,
                                                  &at[i * dim],

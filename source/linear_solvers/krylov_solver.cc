@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <deal.II/lac/solver_cg.h>
 #include <deal.II/lac/solver_gmres.h>
 
 #include <viscoplastic_contact/base/messages.h>
@@ -37,6 +36,8 @@ namespace Viscoplastic
       , w(residual)
       , product(residual)
       , first(residual)
+      , direction(residual)
+      , image(residual)
     {
       compute_residual();
     }
@@ -50,12 +51,19 @@ namespace Viscoplastic
     void
     move_face(const Vector<double> &change) override
     {
-      if (!solver.face.any(change.size() > 0 && change.linfty_norm() > 0.))
+      if (!any_moves(change))
         return;
-      w = 0.;
-      solver.restriction.set(change, w);
-      solver.matrix.vmult(product, w, solver.face_blocks);
-      take_step(1.);
+      first_is_truncated.reset();
+      const FaceRestriction &restriction = solver.restriction;
+      // As in take_step(), with K w from the change of the residual.
+      Vector<double> terms = restriction.gather(load);
+      terms *= 2.;
+      terms -= restriction.gather(residual);
+      subtract_face_product(change, residual);
+      terms -= restriction.gather(residual);
+      restrict_to_unknowns(residual);
+      squared_norm += solver.face.dot(change, terms);
+      restriction.add(1., change, u);
     }
 
     void
@@ -89,8 +97,11 @@ namespace Viscoplastic
                         const double          limit,
                         unsigned int         &iterations) override
     {
-      product = residual;
-      solver.restriction.add(-1., force, product);
+      if (first_is_truncated != false) // otherwise dual_norm() has set it
+        {
+          product = residual;
+          solver.restriction.add(-1., force, product);
+        }
       return dual_norm_of_product(limit, iterations);
     }
 
@@ -124,9 +135,16 @@ namespace Viscoplastic
     SearchTerms
     search_terms(const Vector<double> &face_part) override
     {
-      solver.restriction.set(face_part, w);
-      solver.matrix.vmult(product, w);
-      return {residual * w, product * w, solver.restriction.gather(product)};
+      Vector<double> less = solver.restriction.gather(w);
+      less -= face_part;
+      if (any_moves(less))
+        {
+          solver.restriction.set(face_part, w);
+          subtract_face_product(less, product);
+        }
+      slope     = residual * w;
+      curvature = product * w;
+      return {slope, curvature, solver.restriction.gather(product)};
     }
 
     void
@@ -135,8 +153,7 @@ namespace Viscoplastic
       first_is_truncated.reset();
       // K w = product and K u = load - residual, except for excluded
       // components, where w is zero.
-      squared_norm +=
-        step * (2. * (w * load - w * residual) + step * (w * product));
+      squared_norm += step * (2. * (w * load - slope) + step * curvature);
       u.add(step, w);
       restrict_to_unknowns(product);
       residual.add(-step, product);
@@ -176,6 +193,52 @@ namespace Viscoplastic
       solver.restriction.project(truncation, product);
     }
 
+    /// Whether a face vector is not zero. Collective.
+    bool
+    any_moves(const Vector<double> &x) const
+    {
+      return solver.face.any(x.size() > 0 && x.linfty_norm() > 0.);
+    }
+
+    /// v := v - K R^T x for a face vector x; changes `direction`. Collective.
+    void
+    subtract_face_product(const Vector<double> &x, DistributedVector &v)
+    {
+      // Nodes of the face may have unknowns that are none of the face.
+      const unsigned int dim = solver.matrix.block_size();
+      for (const unsigned int i : solver.restriction.positions())
+        std::fill_n(direction.begin() + i / dim * dim, dim, 0.);
+      solver.restriction.add(-1., x, direction);
+      solver.matrix.vmult_add(v, direction, solver.face_blocks);
+    }
+
+    /// The end of conjugate gradients: iterations, residual over that at the
+    /// start, and x . K x of the solution x.
+    struct End
+    {
+      unsigned int iterations = 0;
+      double       reduction = 1., square = 0.;
+    };
+
+    /// Conjugate gradients from x = 0 for the residual @p r, which is `product`
+    /// if `first` is its preconditioned residual. After each iteration x grows
+    /// by alpha times `direction`, and act(alpha, x . K x) tells whether to
+    /// stop.
+    template <typename Action>
+    End
+    iterate(const Operator    &system,
+            const Inverse     &inverse,
+            DistributedVector &r,
+            const double       tolerance,
+            const unsigned int max_iterations,
+            const Action      &act);
+
+    /// Solve the tilted system for `product` by GMRES; sets w.
+    End
+    solve_tilted(const Operator &system,
+                 const Inverse  &inverse,
+                 const double    tolerance);
+
     /// Return (product . M^-1 product)^{1/2}.
     double
     norm_by_preconditioner(const bool is_truncated);
@@ -188,14 +251,19 @@ namespace Viscoplastic
     const KrylovSolver      &solver;
     const DistributedVector &load;
     DistributedVector       &u;
-    DistributedVector        residual, w, product;
+    /// The residual of u, a correction and K times it.
+    DistributedVector residual, w, product;
     /// The result of the preconditioner for product, with or without
     /// truncation, with which conjugate gradients begin.
-    DistributedVector   first;
+    DistributedVector first;
+    /// The search direction of conjugate gradients, and the system times it.
+    DistributedVector   direction, image;
     std::optional<bool> first_is_truncated;
     FaceTruncation      truncation;
     bool                has_springs  = false;
     double              squared_norm = 0.;
+    /// The terms of the line search along w.
+    double slope = 0., curvature = 0.;
   };
 
 
@@ -205,6 +273,8 @@ namespace Viscoplastic
   {
     const Solve &solve;
     const bool   is_truncated;
+    /// K x on the face, of the last product.
+    mutable Vector<double> on_face = {};
 
     void
     vmult(DistributedVector &y, const DistributedVector &x) const
@@ -217,13 +287,17 @@ namespace Viscoplastic
         }
       else
         solve.solver.matrix.vmult(y, x);
+      const FaceRestriction &restriction = solve.solver.restriction;
       if (is_truncated)
-        solve.solver.restriction.tilt_equations(solve.truncation, y);
-      if (is_truncated && solve.has_springs)
-        solve.solver.restriction.add_springs(solve.truncation, x, y);
+        {
+          on_face = restriction.gather(y);
+          restriction.tilt_equations(solve.truncation, y);
+          if (solve.has_springs)
+            restriction.add_springs(solve.truncation, x, y);
+        }
       solve.restrict_to_unknowns(y);
       if (is_truncated)
-        solve.solver.restriction.project(solve.truncation, y);
+        restriction.project(solve.truncation, y);
     }
   };
 
@@ -270,53 +344,116 @@ namespace Viscoplastic
 
 
 
+  template <typename Action>
+  KrylovSolver::Solve::End
+  KrylovSolver::Solve::iterate(const Operator    &system,
+                               const Inverse     &inverse,
+                               DistributedVector &r,
+                               const double       tolerance,
+                               const unsigned int max_iterations,
+                               const Action      &act)
+  {
+    End          end;
+    const double size = r.l2_norm();
+    double       r_z  = 0.;
+    // Written so that NaN ends it.
+    while (end.reduction > tolerance && end.iterations < max_iterations)
+      {
+        DistributedVector &z = first;
+        if (std::exchange(first_is_truncated, {}) != inverse.is_truncated)
+          inverse.vmult(z, r);
+        const double old_r_z = std::exchange(r_z, r * z);
+        if (end.iterations == 0)
+          direction = z;
+        else
+          direction.sadd(r_z / old_r_z, 1., z);
+        system.vmult(image, direction);
+        const double alpha = r_z / (direction * image);
+        r.add(-alpha, image);
+        ++end.iterations;
+        end.reduction = r.l2_norm() / size;
+        end.square += alpha * r_z;
+        if (act(alpha, end.square))
+          break;
+      }
+    return end;
+  }
+
+
+
   unsigned int
   KrylovSolver::Solve::correct(const Vector<double> &force,
                                const double          tolerance,
                                Vector<double>       &face_part)
   {
-    set_right_side(force);
-    w                 = 0.;
-    const double size = product.l2_norm();
-    face_part         = 0.;
-    if (size == 0.)
+    if (first_is_truncated !=
+        true) // otherwise truncated_dual_norm() has set it
+      set_right_side(force);
+    w         = 0.;
+    face_part = 0.;
+    if (product.l2_norm() == 0.)
       return 0;
 
+    const Operator system{*this, true};
+    const Inverse  inverse{*this, true};
+    End            end;
+    if (solver.face.any(!truncation.tilt.empty()))
+      {
+        end = solve_tilted(system, inverse, tolerance);
+        solver.matrix.vmult(product, w);
+      }
+    else
+      {
+        Vector<double> response(face_part);
+        end = iterate(system,
+                      inverse,
+                      product,
+                      tolerance,
+                      max_cg_iterations,
+                      [&](const double alpha, const double) {
+                        w.add(alpha, direction);
+                        response.add(alpha, system.on_face);
+                        return false;
+                      });
+        // K w, off the face what it has taken of the residual.
+        product.sadd(-1., 1., residual);
+        solver.restriction.set(response, product);
+      }
+    if (!std::isfinite(end.reduction))
+      refuse("The conjugate gradient method met a value that is not finite.");
+    // A result short of the tolerance reduces the error, too: the next
+    // correction starts from it.
+    if (end.reduction > tolerance && !(end.reduction < 0.5))
+      refuse("The conjugate gradient method does not converge; for nearly "
+             "incompressible bodies and flat cells use the direct linear "
+             "solver, on one rank.");
+    face_part = solver.restriction.gather(w);
+    solver.preconditioner->learn(end.iterations,
+                                 -std::log10(std::max(end.reduction, 1e-16)));
+    return end.iterations;
+  }
+
+
+
+  KrylovSolver::Solve::End
+  KrylovSolver::Solve::solve_tilted(const Operator &system,
+                                    const Inverse  &inverse,
+                                    const double    tolerance)
+  {
+    const double     size = product.l2_norm();
     ReductionControl control(max_cg_iterations, 0., tolerance);
-    const Operator   system{*this, true};
-    const Inverse    inverse{*this, true};
     try
       {
-        if (solver.face.any(!truncation.tilt.empty()))
-          SolverGMRES<DistributedVector>(
-            control,
-            SolverGMRES<DistributedVector>::AdditionalData(
-              /* max_n_tmp_vectors = */ 50, /* right_preconditioning = */ true))
-            .solve(system, w, product, inverse);
-        else
-          SolverCG<DistributedVector>(control).solve(system,
-                                                     w,
-                                                     product,
-                                                     inverse);
+        SolverGMRES<DistributedVector>(
+          control,
+          SolverGMRES<DistributedVector>::AdditionalData(
+            /* max_n_tmp_vectors = */ 50, /* right_preconditioning = */ true))
+          .solve(system, w, product, inverse);
       }
-    catch (const SolverControl::NoConvergence &failure)
-      {
-        if (!std::isfinite(failure.last_residual))
-          refuse(
-            "The conjugate gradient method met a value that is not finite.");
-        if (!(failure.last_residual < 0.5 * size))
-          refuse("The conjugate gradient method does not converge; for nearly "
-                 "incompressible bodies and flat cells use the direct linear "
-                 "solver, on one rank.");
-        // The result reduces the error: the next correction starts from it.
-      }
+    catch (const SolverControl::NoConvergence &)
+      {} // The result tells.
     solver.restriction.tilt_motions(truncation, w);
-    face_part = solver.restriction.gather(w);
-
-    solver.preconditioner->learn(
-      control.last_step(),
-      std::log10(size / std::max(control.last_value(), 1e-16 * size)));
-    return control.last_step();
+    return {control.last_step(), control.last_value() / size, 0.};
   }
 
 
@@ -326,46 +463,33 @@ namespace Viscoplastic
                                             unsigned int &iterations)
   {
     // A preconditioner for another stick set misjudges residuals on the face,
-    // so solve A w = R on all unknowns: w . R is the squared norm minus the
+    // so solve A x = R on all unknowns: x . R is the squared norm minus the
     // squared error, and grows in each iteration. If this takes long, a
     // preconditioner set up for all unknowns pays; restarting with it makes the
     // result independent of restarts of the run.
     if (!(product.l2_norm() > 0.))
       return 0.;
-    const auto square = [&](const DistributedVector &x) {
-      return std::max(0., x * product);
-    };
+    constexpr double   tolerance = 0.1;
     const unsigned int patience =
       std::min(solver.preconditioner->iterations_for_whole(),
                max_cg_iterations);
     for (const bool is_whole : {false, true})
       {
-        w                         = 0.;
-        bool             is_above = false;
-        ReductionControl control(is_whole ? max_cg_iterations : patience,
-                                 0.,
-                                 0.1);
-        SolverCG<DistributedVector> cg(control);
-        if (std::isfinite(limit))
-          cg.connect([&](const unsigned int, const double, const auto &x) {
-            is_above = square(x) > Utilities::fixed_power<2>(limit);
-            return is_above ? SolverControl::failure : SolverControl::success;
-          });
-        bool has_ended = true;
-        try
-          {
-            cg.solve(Operator{*this, false},
-                     w,
-                     product,
-                     Inverse{*this, false, is_whole});
-          }
-        catch (const SolverControl::NoConvergence &)
-          {
-            has_ended = is_above;
-          }
-        iterations += control.last_step();
-        if (has_ended)
-          return std::sqrt(square(w));
+        w                  = product;
+        bool      is_above = false;
+        const End end      = iterate(Operator{*this, false},
+                                Inverse{*this, false, is_whole},
+                                w,
+                                tolerance,
+                                is_whole ? max_cg_iterations : patience,
+                                [&](const double, const double square) {
+                                  is_above =
+                                    square > Utilities::fixed_power<2>(limit);
+                                  return is_above;
+                                });
+        iterations += end.iterations;
+        if (end.reduction <= tolerance || is_above)
+          return std::sqrt(std::max(0., end.square));
         if (patience == max_cg_iterations)
           break;
       }

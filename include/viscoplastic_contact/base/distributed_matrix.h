@@ -128,10 +128,12 @@ namespace Viscoplastic
     void
     vmult(DistributedVector &y, const DistributedVector &x) const;
 
-    /// A stored block of an owned row, by its position in the pattern.
+    /// A stored block of an owned row, by its position in the pattern, and
+    /// whether row and column are chosen, see blocks_at().
     struct Place
     {
       unsigned int row;
+      bool         row_is_chosen, column_is_chosen;
       std::size_t  entry;
     };
     unsigned int
@@ -150,11 +152,12 @@ namespace Viscoplastic
     std::vector<Place>
     blocks_at(const std::vector<bool> &is_chosen) const;
 
-    /// y := A x with only these blocks and their transposes. Collective.
+    /// y := y + A x for an x that is zero but at the nodes chosen for @p
+    /// places; other entries of @p x are not read. Collective.
     void
-    vmult(DistributedVector        &y,
-          const DistributedVector  &x,
-          const std::vector<Place> &places) const;
+    vmult_add(DistributedVector        &y,
+              const DistributedVector  &x,
+              const std::vector<Place> &places) const;
 
     /// Return the owned entries of a vector, then those of ghosts. Collective.
     std::vector<double>

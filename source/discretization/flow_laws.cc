@@ -9,16 +9,14 @@ namespace Viscoplastic
 {
   namespace
   {
-    /// Return the position of a sample; in 2D, z = 0.
+    /// A point in three dimensions; in 2D, z = 0.
     template <int dim>
     Point<3>
-    position(const StressSpace<dim> &stress_space,
-             const std::size_t       cell,
-             const unsigned int      s)
+    in_space(const Point<dim> &of)
     {
       Point<3> x;
       for (unsigned int d = 0; d < dim; ++d)
-        x[d] = stress_space.position(cell, s)[d];
+        x[d] = of[d];
       return x;
     }
 
@@ -104,12 +102,13 @@ namespace Viscoplastic
         {
           const ViscoplasticLaw *law = start.law(c);
           if (any_to_sample)
-            parameters.push_back(law ? law
-                                         ->point(position(stress_space, c, s),
-                                                 0.,
-                                                 start.temperature(c, s))
-                                         .parameters :
-                                       LawParameters());
+            parameters.push_back(
+              law ? law
+                      ->point(in_space(stress_space.position(c, s)),
+                              0.,
+                              start.temperature(c, s))
+                      .parameters :
+                    LawParameters());
           if (law && (s == 0 || start.varies_in_space(c)))
             law->check(stress_space.moduli(c), start.point(c, s));
           if (law && s == 0)
@@ -211,7 +210,7 @@ namespace Viscoplastic
     for (const Entry &entry : laws.materials)
       uniform.push_back(entry.law && !entry.varies_in_space ?
                           entry.law->point(Point<3>(), t, T) :
-                          LawPoint());
+                          LawPoint{{}, t});
   }
 
 
@@ -230,25 +229,33 @@ namespace Viscoplastic
 
 
   template <int dim>
-  LawPoint
-  FlowLaws<dim>::AtTime::point(const std::size_t  cell,
-                               const unsigned int s) const
+  void
+  FlowLaws<dim>::AtTime::set_points(const std::size_t  cell,
+                                    const unsigned int first,
+                                    const unsigned int n,
+                                    LawPoint          *points) const
   {
-    const unsigned int m     = material(cell);
-    const Entry       &entry = laws.materials[m];
-    const Point<3>     x     = position(laws.stress_space, cell, s);
-    const std::size_t  i     = cell * laws.stress_space.n_samples + s;
-    const bool         anew  = entry.varies_in_space && entry.varies_in_time;
-    LawPoint           point =
-      anew ? entry.law->point(x, t, temperature(cell, s)) : uniform[m];
-    if (entry.varies_in_space && !anew)
-      point.parameters = laws.parameters[i];
-    point.x           = x;
-    point.t           = t;
-    point.temperature = temperature(cell, s);
-    if (history != nullptr)
-      point.history = &(*history)[i];
-    return point;
+    const StressSpace<dim> &space  = laws.stress_space;
+    const Entry            &of     = entry(cell);
+    const Point<dim>        origin = space.origin(cell);
+    std::fill_n(points, n, uniform[material(cell)]);
+    for (unsigned int s = first; s < first + n; ++s)
+      points[s - first].x =
+        in_space(Point<dim>(origin + space.offset(cell, s)));
+    if (!of.varies_in_space && !thermal && history == nullptr)
+      return;
+    for (unsigned int s = first; s < first + n; ++s)
+      {
+        LawPoint         &point = points[s - first];
+        const std::size_t i     = cell * space.n_samples + s;
+        point.temperature       = temperature(cell, s);
+        if (of.varies_in_space && of.varies_in_time)
+          point = of.law->point(point.x, t, point.temperature);
+        else if (of.varies_in_space)
+          point.parameters = laws.parameters[i];
+        if (history != nullptr)
+          point.history = &(*history)[i];
+      }
   }
 
 
@@ -316,12 +323,12 @@ namespace Viscoplastic
             }
           const Stiffness &stiffness = stress_space.moduli(c);
           stress_space.strains(c, state.u.begin(), strain.data());
-          for (unsigned int s = 0; s < n; ++s)
-            {
-              stress[s] = stiffness.stress(strain[s]) + z[c * n + s];
+          std::copy_n(&z[c * n], n, stress.data());
+          stiffness.add_stress(n, strain.data(), stress.data());
+          if (laws.thermal)
+            for (unsigned int s = 0; s < n; ++s)
               strain[s] = now.mechanical(strain[s], c, s);
-              points[s] = now.point(c, s);
-            }
+          now.set_points(c, 0, n, points.data());
           law->flow({n, stress.data(), strain.data(), points.data(), stiffness},
                     flow.data());
           for (unsigned int s = 0; s < n; ++s)

@@ -57,8 +57,8 @@ namespace Viscoplastic
           for (const unsigned int q : fe_values.quadrature_point_indices())
             {
               weights.push_back(fe_values.JxW(q));
-              positions.push_back(fe_values.quadrature_point(q) -
-                                  cell->vertex(0));
+              offsets.push_back(fe_values.quadrature_point(q) -
+                                cell->vertex(0));
               for (const unsigned int v : cell->vertex_indices())
                 {
                   gradients.push_back(fe_values.shape_grad(v * dim, q));
@@ -69,7 +69,7 @@ namespace Viscoplastic
         else
           {
             weights.push_back(volume);
-            positions.push_back(cell->center() - cell->vertex(0));
+            offsets.push_back(cell->center() - cell->vertex(0));
             for (const unsigned int v : cell->vertex_indices())
               {
                 Tensor<1, dim> mean;

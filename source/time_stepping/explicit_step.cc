@@ -58,18 +58,25 @@ namespace Viscoplastic
       solution.note(rate);
     };
 
-    z = old.z;
-    if (discretization.laws.thermal)
-      discretization.laws.thermal->follow(old.t, step.t, z);
+    IrreversibleStress followed;
+    const auto        &thermal = discretization.laws.thermal;
+    if (thermal)
+      {
+        followed = old.z;
+        thermal->follow(old.t, step.t, followed);
+      }
     // z at the end of the step without any flow.
-    const IrreversibleStress carried = is_heun ? z : IrreversibleStress();
-    if (scene.has_viscosity())
+    const IrreversibleStress &carried = thermal ? followed : old.z;
+    if (!scene.has_viscosity())
+      z = carried;
+    else
       {
         // (3.19): z_n = z_{n-1} + k G(t_{n-1}, sigma_{n-1}, eps_{n-1}).
         TimerOutput::Scope phase(timer, "rate");
         use(*problem.old_rate);
-        for (std::size_t i = 0; i < z.size(); ++i)
-          z[i] += step.k * problem.old_rate->rate[i];
+        z.reserve(carried.size());
+        for (std::size_t i = 0; i < carried.size(); ++i)
+          z.push_back(carried[i] + step.k * problem.old_rate->rate[i]);
         for (std::size_t i = 0; i < history.size(); ++i)
           history[i] += step.k * problem.old_rate->history_rate[i];
       }

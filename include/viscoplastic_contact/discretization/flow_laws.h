@@ -60,7 +60,19 @@ namespace Viscoplastic
       /// The point at which law(cell) is evaluated for one of its samples, with
       /// the history variables of at().
       LawPoint
-      point(const std::size_t cell, const unsigned int s) const;
+      point(const std::size_t cell, const unsigned int s) const
+      {
+        LawPoint result;
+        set_points(cell, s, 1, &result);
+        return result;
+      }
+
+      /// Set @p points to point() of @p n samples, beginning with @p first.
+      void
+      set_points(const std::size_t  cell,
+                 const unsigned int first,
+                 const unsigned int n,
+                 LawPoint          *points) const;
 
       /// Whether point() differs from sample to sample.
       bool

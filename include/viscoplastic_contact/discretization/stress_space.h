@@ -70,11 +70,21 @@ namespace Viscoplastic
       return weights[space.shapes[cell] * n_samples + s];
     }
 
+    /// The position of a sample: the offset from the origin of its cell.
     Point<dim>
     position(const std::size_t cell, const unsigned int s) const
     {
-      return space.cells[cell]->vertex(0) +
-             positions[space.shapes[cell] * n_samples + s];
+      return origin(cell) + offset(cell, s);
+    }
+    Point<dim>
+    origin(const std::size_t cell) const
+    {
+      return space.cells[cell]->vertex(0);
+    }
+    const Tensor<1, dim> &
+    offset(const std::size_t cell, const unsigned int s) const
+    {
+      return offsets[space.shapes[cell] * n_samples + s];
     }
 
     /// Set @p strain to P_Qh eps(u) in a cell: the mean strain, or that at the
@@ -185,9 +195,9 @@ namespace Viscoplastic
     std::vector<double>         volumes;
     std::vector<Tensor<1, dim>> gradients;
     /// Likewise, hoop strains of u_r = 1 at the vertices, empty unless the body
-    /// is one of revolution; by sample, weights and positions from vertex 0.
+    /// is one of revolution; by sample, weights and offsets from vertex 0.
     std::vector<double>         hoops, weights;
-    std::vector<Tensor<1, dim>> positions;
+    std::vector<Tensor<1, dim>> offsets;
     /// Means of gradients and hoop strains, n_vertices each.
     std::vector<Tensor<1, dim>> mean_gradients;
     std::vector<double>         mean_hoops;

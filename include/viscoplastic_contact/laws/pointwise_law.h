@@ -161,7 +161,10 @@ namespace Viscoplastic
                const double                 secant,
                const Stiffness             &stiffness)
     {
-      return stiffness.stress(-1.5 * secant * s);
+      const double factor = -1.5 * secant;
+      return stiffness.is_isotropic() ?
+               factor * stiffness.largest_deviatoric_eigenvalue() * s :
+               stiffness.stress(factor * s);
     }
   };
 } // namespace Viscoplastic

@@ -323,11 +323,12 @@ namespace Viscoplastic
             }
           const Stiffness &stiffness = stress_space.moduli(c);
           stress_space.strains(c, state.u.begin(), strain.data());
-          std::copy_n(&z[c * n], n, stress.data());
-          stiffness.add_stress(n, strain.data(), stress.data());
-          if (laws.thermal)
-            for (unsigned int s = 0; s < n; ++s)
-              strain[s] = now.mechanical(strain[s], c, s);
+          for (unsigned int s = 0; s < n; ++s)
+            {
+              stress[s] = stiffness.stress(strain[s]) + z[c * n + s];
+              if (laws.thermal)
+                strain[s] = now.mechanical(strain[s], c, s);
+            }
           now.set_points(c, 0, n, points.data());
           law->flow({n, stress.data(), strain.data(), points.data(), stiffness},
                     flow.data());

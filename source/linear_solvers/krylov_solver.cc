@@ -80,8 +80,7 @@ namespace Viscoplastic
     dual_norm(const Vector<double> &force) override
     {
       // Without truncation: residuals on sticking components are errors, too.
-      product = residual;
-      solver.restriction.add(-1., force, product);
+      set_product(force);
       return norm_by_preconditioner(false);
     }
 
@@ -98,10 +97,7 @@ namespace Viscoplastic
                         unsigned int         &iterations) override
     {
       if (first_is_truncated != false) // otherwise dual_norm() has set it
-        {
-          product = residual;
-          solver.restriction.add(-1., force, product);
-        }
+        set_product(force);
       return dual_norm_of_product(limit, iterations);
     }
 
@@ -183,12 +179,19 @@ namespace Viscoplastic
       first_is_truncated.reset();
     }
 
+    /// Set product to the residual without a face's force.
+    void
+    set_product(const Vector<double> &force)
+    {
+      product = residual;
+      solver.restriction.add(-1., force, product);
+    }
+
     /// Set product to the right-hand side of correct().
     void
     set_right_side(const Vector<double> &force)
     {
-      product = residual;
-      solver.restriction.add(-1., force, product);
+      set_product(force);
       solver.restriction.tilt_equations(truncation, product);
       solver.restriction.project(truncation, product);
     }
@@ -212,8 +215,7 @@ namespace Viscoplastic
       solver.matrix.vmult_add(v, direction, solver.face_blocks);
     }
 
-    /// The end of conjugate gradients: iterations, residual over that at the
-    /// start, and x . K x of the solution x.
+    /// Iterations, last over first residual, and x . K x of a solution x.
     struct End
     {
       unsigned int iterations = 0;
@@ -221,23 +223,17 @@ namespace Viscoplastic
     };
 
     /// Conjugate gradients from x = 0 for the residual @p r, which is `product`
-    /// if `first` is its preconditioned residual. After each iteration x grows
-    /// by alpha times `direction`, and act(alpha, x . K x) tells whether to
-    /// stop.
-    template <typename Action>
+    /// if `first` is its preconditioned residual, until x . K x is above @p
+    /// limit. If @p response is not null, x is added to w, and K x on the face
+    /// to it.
     End
     iterate(const Operator    &system,
             const Inverse     &inverse,
             DistributedVector &r,
             const double       tolerance,
             const unsigned int max_iterations,
-            const Action      &act);
-
-    /// Solve the tilted system for `product` by GMRES; sets w.
-    End
-    solve_tilted(const Operator &system,
-                 const Inverse  &inverse,
-                 const double    tolerance);
+            const double       limit,
+            Vector<double>    *response = nullptr);
 
     /// Return (product . M^-1 product)^{1/2}.
     double
@@ -306,19 +302,13 @@ namespace Viscoplastic
   /// P M^{-1} P on the truncated space, or M^{-1} on all unknowns.
   struct KrylovSolver::Solve::Inverse
   {
-    Solve     &solve;
-    const bool is_truncated;
-    const bool is_whole = false;
+    const Solve &solve;
+    const bool   is_truncated;
+    const bool   is_whole = false;
 
     void
     vmult(DistributedVector &y, const DistributedVector &x) const
     {
-      if (std::exchange(solve.first_is_truncated, {}) == is_truncated)
-        {
-          // By linearity, since x is a multiple of product.
-          y.equ((x * solve.product) / solve.product.norm_sqr(), solve.first);
-          return;
-        }
       if (is_whole)
         solve.solver.preconditioner->vmult_whole(y, x);
       else if (is_truncated)
@@ -344,22 +334,23 @@ namespace Viscoplastic
 
 
 
-  template <typename Action>
   KrylovSolver::Solve::End
   KrylovSolver::Solve::iterate(const Operator    &system,
                                const Inverse     &inverse,
                                DistributedVector &r,
                                const double       tolerance,
                                const unsigned int max_iterations,
-                               const Action      &act)
+                               const double       limit,
+                               Vector<double>    *response)
   {
-    End          end;
-    const double size = r.l2_norm();
-    double       r_z  = 0.;
+    End                end;
+    const double       size = r.l2_norm();
+    double             r_z  = 0.;
+    DistributedVector &z    = first;
     // Written so that NaN ends it.
-    while (end.reduction > tolerance && end.iterations < max_iterations)
+    while (end.reduction > tolerance && end.iterations < max_iterations &&
+           !(end.square > limit))
       {
-        DistributedVector &z = first;
         if (std::exchange(first_is_truncated, {}) != inverse.is_truncated)
           inverse.vmult(z, r);
         const double old_r_z = std::exchange(r_z, r * z);
@@ -369,12 +360,15 @@ namespace Viscoplastic
           direction.sadd(r_z / old_r_z, 1., z);
         system.vmult(image, direction);
         const double alpha = r_z / (direction * image);
+        if (response != nullptr)
+          {
+            w.add(alpha, direction);
+            response->add(alpha, system.on_face);
+          }
         r.add(-alpha, image);
         ++end.iterations;
         end.reduction = r.l2_norm() / size;
         end.square += alpha * r_z;
-        if (act(alpha, end.square))
-          break;
       }
     return end;
   }
@@ -389,9 +383,10 @@ namespace Viscoplastic
     if (first_is_truncated !=
         true) // otherwise truncated_dual_norm() has set it
       set_right_side(force);
-    w         = 0.;
-    face_part = 0.;
-    if (product.l2_norm() == 0.)
+    w                 = 0.;
+    face_part         = 0.;
+    const double size = product.l2_norm();
+    if (size == 0.)
       return 0;
 
     const Operator system{*this, true};
@@ -399,7 +394,20 @@ namespace Viscoplastic
     End            end;
     if (solver.face.any(!truncation.tilt.empty()))
       {
-        end = solve_tilted(system, inverse, tolerance);
+        ReductionControl control(max_cg_iterations, 0., tolerance);
+        try
+          {
+            SolverGMRES<DistributedVector>(
+              control,
+              SolverGMRES<DistributedVector>::AdditionalData(
+                /* max_n_tmp_vectors = */ 50,
+                /* right_preconditioning = */ true))
+              .solve(system, w, product, inverse);
+          }
+        catch (const SolverControl::NoConvergence &)
+          {} // see below
+        end = {control.last_step(), control.last_value() / size, 0.};
+        solver.restriction.tilt_motions(truncation, w);
         solver.matrix.vmult(product, w);
       }
     else
@@ -410,11 +418,8 @@ namespace Viscoplastic
                       product,
                       tolerance,
                       max_cg_iterations,
-                      [&](const double alpha, const double) {
-                        w.add(alpha, direction);
-                        response.add(alpha, system.on_face);
-                        return false;
-                      });
+                      std::numeric_limits<double>::infinity(),
+                      &response);
         // K w, off the face what it has taken of the residual.
         product.sadd(-1., 1., residual);
         solver.restriction.set(response, product);
@@ -435,35 +440,12 @@ namespace Viscoplastic
 
 
 
-  KrylovSolver::Solve::End
-  KrylovSolver::Solve::solve_tilted(const Operator &system,
-                                    const Inverse  &inverse,
-                                    const double    tolerance)
-  {
-    const double     size = product.l2_norm();
-    ReductionControl control(max_cg_iterations, 0., tolerance);
-    try
-      {
-        SolverGMRES<DistributedVector>(
-          control,
-          SolverGMRES<DistributedVector>::AdditionalData(
-            /* max_n_tmp_vectors = */ 50, /* right_preconditioning = */ true))
-          .solve(system, w, product, inverse);
-      }
-    catch (const SolverControl::NoConvergence &)
-      {} // The result tells.
-    solver.restriction.tilt_motions(truncation, w);
-    return {control.last_step(), control.last_value() / size, 0.};
-  }
-
-
-
   double
   KrylovSolver::Solve::dual_norm_of_product(const double  limit,
                                             unsigned int &iterations)
   {
     // A preconditioner for another stick set misjudges residuals on the face,
-    // so solve A x = R on all unknowns: x . R is the squared norm minus the
+    // so solve K x = R on all unknowns: x . R is the squared norm minus the
     // squared error, and grows in each iteration. If this takes long, a
     // preconditioner set up for all unknowns pays; restarting with it makes the
     // result independent of restarts of the run.
@@ -475,20 +457,15 @@ namespace Viscoplastic
                max_cg_iterations);
     for (const bool is_whole : {false, true})
       {
-        w                  = product;
-        bool      is_above = false;
-        const End end      = iterate(Operator{*this, false},
+        w             = product;
+        const End end = iterate(Operator{*this, false},
                                 Inverse{*this, false, is_whole},
                                 w,
                                 tolerance,
                                 is_whole ? max_cg_iterations : patience,
-                                [&](const double, const double square) {
-                                  is_above =
-                                    square > Utilities::fixed_power<2>(limit);
-                                  return is_above;
-                                });
+                                limit * limit);
         iterations += end.iterations;
-        if (end.reduction <= tolerance || is_above)
+        if (end.reduction <= tolerance || end.square > limit * limit)
           return std::sqrt(std::max(0., end.square));
         if (patience == max_cg_iterations)
           break;

@@ -63,12 +63,6 @@ namespace Viscoplastic
     SymmetricTensor<2, 3>
     stress(const SymmetricTensor<2, 3> &strain) const;
 
-    /// Add E strain[i] to stress[i] at @p n points.
-    void
-    add_stress(const unsigned int           n,
-               const SymmetricTensor<2, 3> *strain,
-               SymmetricTensor<2, 3>       *stress) const;
-
     /// E T, the derivatives of the stress of strains with the derivatives T.
     SymmetricTensor<4, 3>
     stress(const SymmetricTensor<4, 3> &strain) const;
@@ -211,33 +205,6 @@ namespace Viscoplastic
     for (unsigned int i = 0; i < 3; ++i)
       result[i][i] += pressure;
     return result;
-  }
-
-
-
-  DEAL_II_ALWAYS_INLINE inline void
-  Stiffness::add_stress(const unsigned int           n,
-                        const SymmetricTensor<2, 3> *strain,
-                        SymmetricTensor<2, 3>       *stress) const
-  {
-    if (anisotropic_data)
-      {
-        for (unsigned int i = 0; i < n; ++i)
-          stress[i] += anisotropic_stress(strain[i]);
-        return;
-      }
-    // By components, see complementary_product().
-    const double twice_mu = 2. * mu, lambda = bulk - twice_mu / 3.;
-    for (unsigned int i = 0; i < n; ++i)
-      {
-        const double *eps      = strain[i].begin_raw();
-        double       *sigma    = stress[i].begin_raw();
-        const double  pressure = lambda * (eps[0] + eps[1] + eps[2]);
-        for (unsigned int d = 0; d < 3; ++d)
-          sigma[d] += twice_mu * eps[d] + pressure;
-        for (unsigned int d = 3; d < 6; ++d)
-          sigma[d] += twice_mu * eps[d];
-      }
   }
 
 

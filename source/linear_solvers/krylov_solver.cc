@@ -15,7 +15,16 @@ namespace Viscoplastic
   namespace
   {
     constexpr unsigned int max_cg_iterations = 5000;
-  }
+
+    /// y := y + factor x, also on ranks without a face, where vectors are
+    /// empty.
+    void
+    add(const double factor, const Vector<double> &x, Vector<double> &y)
+    {
+      if (y.size() > 0)
+        y.add(factor, x);
+    }
+  } // namespace
 
 
 
@@ -57,10 +66,10 @@ namespace Viscoplastic
       const FaceRestriction &restriction = solver.restriction;
       // As in take_step(), with K w from the change of the residual.
       Vector<double> terms = restriction.gather(load);
-      terms *= 2.;
-      terms -= restriction.gather(residual);
+      add(1., restriction.gather(load), terms);
+      add(-1., restriction.gather(residual), terms);
       subtract_face_product(change, residual);
-      terms -= restriction.gather(residual);
+      add(-1., restriction.gather(residual), terms);
       restrict_to_unknowns(residual);
       squared_norm += solver.face.dot(change, terms);
       restriction.add(1., change, u);
@@ -132,7 +141,7 @@ namespace Viscoplastic
     search_terms(const Vector<double> &face_part) override
     {
       Vector<double> less = solver.restriction.gather(w);
-      less -= face_part;
+      add(-1., face_part, less);
       if (any_moves(less))
         {
           solver.restriction.set(face_part, w);
@@ -363,7 +372,7 @@ namespace Viscoplastic
         if (response != nullptr)
           {
             w.add(alpha, direction);
-            response->add(alpha, system.on_face);
+            add(alpha, system.on_face, *response);
           }
         r.add(-alpha, image);
         ++end.iterations;

@@ -666,6 +666,7 @@ class Scenes(TestCase):
                 "symmetry",
                 pressed(1),
                 **{f"Units/{name}": value for name, value in units.items()},
+                **{"Material/Young's modulus": 1},
                 **{"Output/Integrals": "boundary 3: stress vector"},
             )
         )

@@ -416,8 +416,8 @@ namespace
     while (std::getline(lines, line))
       EXPECT_LE(line.size(), 78u) << line;
     for (const char *part : {"subsection Boundary 0",
-                             "# subsection Material 1",
-                             "set Law = elastic",
+                             "# `Material 1': Bodies of several",
+                             "set Law                    = elastic",
                              "allowed: one of elastic, ",
                              "Default: 0; allowed: a number from 0 to 0.1.",
                              "# maxwell: "})

@@ -21,7 +21,8 @@ namespace
 
   const std::vector<std::string> in_rock{"Units/Length=m",
                                          "Units/Time=day",
-                                         "Units/Stress=MPa"};
+                                         "Units/Stress=MPa",
+                                         "Material/Young's modulus=25000"};
 
 
 

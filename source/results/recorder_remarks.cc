@@ -369,10 +369,10 @@ namespace Viscoplastic
     if (run.has_zero_quantity())
       result.push_back("Warning: '" +
                        scene.names.quantity(scene.quantity->name) +
-                       "' is zero throughout, but for rounding; no tolerance "
-                       "relative to it means anything. Where it should not "
-                       "be, begin with a finer mesh ('Geometry/Global "
-                       "refinements').");
+                       "' is zero throughout, but for rounding and iterations; "
+                       "no tolerance relative to it means anything. Where it "
+                       "should not be, begin with a finer mesh "
+                       "('Geometry/Global refinements').");
     else if (budget && run.controlled_errors().relative() > budget->tolerance)
       result.push_back(remark_on_tolerance());
 

@@ -327,10 +327,14 @@ namespace Viscoplastic
       allowed = std::max(allowed, most_of_new_mesh * (all - errors.before));
     const double of_events =
       std::max(allowed, most_of_event * (all - errors.before));
-    const double ratio = errors.indicator > 0. ?
+    // As long as a quantity is zero, errors relative to it say nothing, and
+    // steps stay as they are.
+    const double ratio = errors.indicator == 0. ?
+                           0. :
+                         tolerance_of_run > 0. && new_size == 0. ?
+                           aim :
                            (errors.indicator - errors.of_events) / allowed +
-                             errors.of_events / of_events :
-                           0.;
+                             errors.of_events / of_events;
     const double least = smallest(step.t_old) * (1. + 1e-9);
     const auto  &phase = schedule.phase_at(step.t_old);
     const double event_gap =

@@ -1220,6 +1220,25 @@ class BetweenTwoPlanes(TestCase):
         self.assertIn("'contact_force_y' is zero throughout", result.stdout)
         self.assertNotIn("has been kept", result.stdout)
 
+    def test_zero_by_symmetry(self):
+        """What vanishes by symmetry takes no shorter steps, though its dual solution does not."""
+        fault = {
+            "Geometry/Arguments": "12, 4 : 0, 0 : 30, 10 : true",
+            **elastic_moduli(60, 0.25),
+            "Material/Law": "maxwell",
+            "Material/maxwell/Viscosity": 3000,
+            **with_roles(free=[0, 1]),
+            **on_boundary(2, Role="contact", **{"Friction law": "tresca"}),
+            "Boundary 2/Friction bound": "0.004+0.006*exp(-((x-15)/4)^2)",
+            **on_boundary(3, Role="displacement", Displacement="3e-5*t; 0"),
+            "Time/Phases": "100: 20, 400: 30",
+            "Output/Fields every": 0,
+            **of("reaction_3_y", 0.1),
+        }
+        result = run("fault", fault, text="")
+        self.assertIn("'reaction_3_y' is zero throughout", result.stdout)
+        self.assertEqual(len(result["t"]), 51)  # those of the phases
+
 
 class OnTheBoundary(TestCase):
     """What a mesh misses on the boundary is known, though no residual feels it."""

@@ -93,8 +93,10 @@ namespace Viscoplastic
                std::min(std::abs(error), std::abs(error - of_sides));
     }
 
-    /// A quantity is rounding if it is less than this times its bound.
-    static constexpr double nothing = 1e-9;
+    /// A quantity is rounding if it is less than the first of these times its
+    /// bound, and vanishes but for iterations below the second one. (Quantities
+    /// that do not vanish are 0.5 to 5e-3 of it at least.)
+    static constexpr double rounding = 1e-9, nothing = 1e-4;
     /// The ratio of creep to relaxation time below which a body is elastic.
     static constexpr double elastic = 0.01;
     /// In bodies that creep, the least ratio of the estimate to the sum of

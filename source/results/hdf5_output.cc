@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "vtu_output.h"
+#include "output_grid.h"
 #include <viscoplastic_contact/base/files.h>
 #include <viscoplastic_contact/base/messages.h>
 #include <viscoplastic_contact/results/output.h>
@@ -46,35 +46,31 @@ namespace Viscoplastic
     /// ParaView. Collective.
     template <int dim>
     std::vector<DataSet>
-    mesh_of(const BodyData<dim> &body)
+    mesh_of(const AdmissibleSpace<dim> &space, const OutputGrid<dim, dim> &body)
     {
-      const MPI_Comm         communicator = body.space.communicator;
-      const DoFHandler<dim> &dof_handler  = body.space.dof_handler;
-      const IndexSet        &owned        = dof_handler.locally_owned_dofs();
-      const auto             n_cells =
-        Utilities::MPI::all_gather(communicator, body.cells.size());
+      const auto n_cells =
+        Utilities::MPI::all_gather(space.communicator, body.n_cells());
       const auto own =
-        n_cells.begin() + Utilities::MPI::this_mpi_process(communicator);
-      std::vector<float>                   coordinates(owned.n_elements());
+        n_cells.begin() + Utilities::MPI::this_mpi_process(space.communicator);
+      std::vector<float>                   coordinates;
       std::vector<types::global_dof_index> nodes;
-      for (const auto &cell : body.space.cells)
-        for (const unsigned int v : cell->vertex_indices())
-          for (unsigned int d = 0; d < dim; ++d)
-            if (const auto dof = cell->vertex_dof_index(v, d);
-                owned.is_element(dof))
-              coordinates[owned.index_within_set(dof)] = cell->vertex(v)[d];
-      for (const auto &cell : body.cells)
-        for (const unsigned int v : {0, 1, 3, 2, 4, 5, 7, 6})
-          if (v < cell->n_vertices())
-            nodes.push_back(cell->vertex_dof_index(v, 0) / dim);
+      for (const auto dof : space.owned)
+        coordinates.push_back(
+          body.points[space.relevant.index_within_set(dof) / dim][dof % dim]);
+      for (std::size_t c = 0; c < body.n_cells(); ++c)
+        for (const unsigned int v : paraview_order)
+          if (v < body.n_vertices)
+            nodes.push_back(space.relevant.nth_index_in_set(
+                              body.vertices[c * body.n_vertices + v] * dim) /
+                            dim);
       return {
         {"nodes",
          dim,
-         owned.is_empty() ? 0 : *owned.begin() / dim,
-         dof_handler.n_dofs() / dim,
+         space.owned.is_empty() ? 0 : *space.owned.begin() / dim,
+         space.dof_handler.n_dofs() / dim,
          std::move(coordinates)},
         {"cells",
-         GeometryInfo<dim>::vertices_per_cell,
+         body.n_vertices,
          std::accumulate(n_cells.begin(), own, std::uint64_t(0)),
          std::accumulate(n_cells.begin(), n_cells.end(), std::uint64_t(0)),
          std::move(nodes)}};
@@ -85,35 +81,32 @@ namespace Viscoplastic
     /// Return the vectors, with three components, and the cell means.
     template <int dim>
     std::vector<DataSet>
-    fields_of(const BodyData<dim> &body, const std::vector<DataSet> &mesh)
+    fields_of(const AdmissibleSpace<dim> &space,
+              const OutputGrid<dim, dim> &body,
+              const std::vector<DataSet> &mesh)
     {
-      const AdmissibleSpace<dim> &space = body.space;
-      std::vector<DataSet>        result;
-      const auto                  add = [&](const FieldColumn &column) {
-        const bool     is_vector = column.rank == 1;
-        const DataSet &rows      = mesh[is_vector ? 0 : 1];
-        result.push_back(
-          {column.name,
-           is_vector ? 3u : 1u,
-           rows.first_row,
-           rows.n_rows,
-           std::vector<float>(),
-           space.scene.parameters.units.label(column.quantity, dim)});
-        return &std::get<0>(result.back().values);
-      };
-      for (const auto &[column, field] : body.vectors)
+      std::vector<DataSet> result;
+      for (const OutputField &field : body.fields)
         {
-          std::vector<float> *const values = add(column);
-          for (const auto dof : space.dof_handler.locally_owned_dofs())
-            {
-              values->push_back(
-                field->begin()[space.relevant.index_within_set(dof)]);
-              if (dim == 2 && dof % dim == 1)
-                values->push_back(0.f);
-            }
+          const DataSet     &rows = mesh[field.is_vector ? 0 : 1];
+          std::vector<float> values;
+          if (field.is_vector)
+            for (const auto dof : space.owned)
+              {
+                values.push_back(
+                  field.values[space.relevant.index_within_set(dof)]);
+                if (dim == 2 && dof % dim == 1)
+                  values.push_back(0.f);
+              }
+          else
+            values = field.values;
+          result.push_back({field.name,
+                            field.is_vector ? 3u : 1u,
+                            rows.first_row,
+                            rows.n_rows,
+                            std::move(values),
+                            field.label});
         }
-      for (const auto &[column, means] : body.means)
-        *add(column) = means;
       return result;
     }
 
@@ -268,13 +261,16 @@ namespace Viscoplastic
 
   template <int dim>
   void
-  Output<dim>::write_in_hdf5(const BodyData<dim> &body, const double t)
+  Output<dim>::write_in_hdf5(const AdmissibleSpace<dim> &space,
+                             const OutputGrid<dim, dim> &body,
+                             const double                t)
   {
     using DataSets = std::vector<DataSet>;
     // Not in the thread that writes, since HDF5 registers with MPI.
     H5open();
-    const auto mesh_now = std::make_shared<DataSets>(mesh_of(body));
-    const auto fields = std::make_shared<DataSets>(fields_of(body, *mesh_now));
+    const auto mesh_now = std::make_shared<DataSets>(mesh_of(space, body));
+    const auto fields =
+      std::make_shared<DataSets>(fields_of(space, body, *mesh_now));
     const std::string record = record_name("solution", times.size() - 1);
     const bool        is_new =
       Utilities::MPI::logical_or(mesh == nullptr || *mesh != *mesh_now,
@@ -315,7 +311,6 @@ namespace Viscoplastic
     files.push_back(
       [fields,
        ranks,
-
        name        = path + record,
        new_mesh    = is_new ? mesh : nullptr,
        mesh_file   = path + mesh_file,

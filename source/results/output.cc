@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "vtu_output.h"
+#include "output_grid.h"
 #include <viscoplastic_contact/base/files.h>
 #include <viscoplastic_contact/base/messages.h>
 #include <viscoplastic_contact/discretization/initial_state.h>
@@ -9,7 +9,6 @@
 #include <viscoplastic_contact/results/output.h>
 
 #include <chrono>
-#include <sstream>
 #include <system_error>
 
 namespace Viscoplastic
@@ -45,7 +44,8 @@ namespace Viscoplastic
                    path,
                    Utilities::MPI::n_mpi_processes(communicator),
                    &end);
-      remove_files_of_earlier_run();
+      remove_unlisted_files();
+      remove_other_lines(path, scene.output_lines.size());
     });
   }
 
@@ -128,10 +128,10 @@ namespace Viscoplastic
 
 
   template <int dim>
-  template <typename Data>
+  template <typename Grid>
   void
   Output<dim>::write_vtu(const std::string &name,
-                         Data               data,
+                         Grid               grid,
                          const bool         is_series)
   {
     // Like DataOutInterface::write_vtu_with_pvtu_record(), whose errors do not
@@ -146,20 +146,17 @@ namespace Viscoplastic
         Utilities::int_to_string(r, Utilities::needed_digits(n_ranks - 1)) +
         ".vtu");
     const auto of_series = is_series ? list(name) : decltype(list(name))();
-    files.push_back([data = std::make_shared<Data>(std::move(data)),
+    files.push_back([grid = std::make_shared<Grid>(std::move(grid)),
                      path = path,
                      record,
                      pieces,
                      of_series,
                      rank]() {
       unsigned int n = 0;
-      replace_file(path + pieces[rank], [&]() { return data->vtu_part(n++); });
+      replace_file(path + pieces[rank], [&]() { return grid->vtu_part(n++); });
       if (rank != 0)
         return;
-      std::ostringstream list;
-      DataOutBase::write_pvtu_record(
-        list, pieces, data->names, data->vectors, vtk_flags());
-      replace_file(path + record + ".pvtu", list.str());
+      replace_file(path + record + ".pvtu", grid->pvtu_record(pieces));
       if (const auto &[file, text] = of_series; !file.empty())
         replace_file(file, text);
     });
@@ -171,20 +168,17 @@ namespace Viscoplastic
   void
   Output<dim>::write_boundary(const AdmissibleSpace<dim> &space)
   {
-    PatchOutput<dim - 1, dim> output;
-    output.names = {"boundary_id"};
+    OutputGrid<dim - 1, dim> grid;
+    grid.add_field(scene, {"boundary_id", 0, Quantity::pure_number}, true);
     for (const auto &cell : space.cells)
       for (const auto &face : cell->face_iterators())
         if (face->at_boundary())
           {
-            auto &patch = output.add_patch();
             for (const unsigned int v : face->vertex_indices())
-              {
-                patch.vertices[v] = face->vertex(v);
-                patch.data(0, v)  = face->boundary_id();
-              }
+              grid.add_vertex(face->vertex(v));
+            grid.fields[0].values.push_back(face->boundary_id());
           }
-    write_vtu("boundary", std::move(output), /* is_series = */ false);
+    write_vtu("boundary", std::move(grid), /* is_series = */ false);
   }
 
 
@@ -195,40 +189,58 @@ namespace Viscoplastic
                           const State<dim>     &state,
                           const Vector<double> *squared_estimate)
   {
-    const StressSpace<dim> &stress_space = laws.stress_space;
-    DistributedVector       difference;
-    BodyData<dim>           body{stress_space.space,
-                       {},
-                       {{column_of(RecordedField::displacement),
-                                   &reported_displacement(scene, state, difference)},
-                                  {column_of(RecordedField::velocity), &state.velocity}},
-                       {}};
+    const StressSpace<dim>     &stress_space = laws.stress_space;
+    const AdmissibleSpace<dim> &space        = stress_space.space;
+    DistributedVector           difference;
+    OutputGrid<dim, dim>        grid;
+    grid.points.resize(space.relevant.n_elements() / dim);
+    const auto add_vector = [&](const RecordedField      field,
+                                const DistributedVector &values) {
+      grid.add_field(scene, column_of(field), /* is_of_cells = */ false);
+      grid.fields.back().values.assign(values.begin(),
+                                       values.begin() +
+                                         grid.points.size() * dim);
+    };
+    add_vector(RecordedField::displacement,
+               reported_displacement(scene, state, difference));
+    add_vector(RecordedField::velocity, state.velocity);
 
     // All ranks need the same fields, including ranks without cells.
     const std::set<RecordedField> fields = BodyFields<dim>::of_output(scene);
     const BodyFields<dim>         means(laws, state, fields);
+    const std::size_t             n_vectors = grid.fields.size();
     for (const FieldColumn &column : columns_of<dim>(fields, false))
-      body.means.emplace_back(column, std::vector<float>());
-    const std::size_t n_fields = body.means.size();
-    body.means.emplace_back(FieldColumn{"subdomain", 0, Quantity::pure_number},
-                            std::vector<float>());
-    for (std::size_t c = 0; c < stress_space.space.cells.size(); ++c)
-      if (const auto &cell = stress_space.space.cells[c];
-          scene.is_present(cell->material_id()))
-        {
-          const std::vector<double> of_cell = means.means(c);
-          for (std::size_t j = 0; j < n_fields; ++j)
-            body.means[j].second.push_back(of_cell[j]);
-          body.means.back().second.push_back(cell->subdomain_id());
-          body.cells.push_back(cell);
-        }
+      grid.add_field(scene, column, /* is_of_cells = */ true);
+    grid.add_field(scene, {"subdomain", 0, Quantity::pure_number}, true);
+    std::vector<typename DoFHandler<dim>::active_cell_iterator> present;
+    for (std::size_t c = 0; c < space.cells.size(); ++c)
+      {
+        const auto &cell       = space.cells[c];
+        const bool  is_present = scene.is_present(cell->material_id());
+        for (const unsigned int v : cell->vertex_indices())
+          {
+            const std::size_t node =
+              space.relevant.index_within_set(cell->vertex_dof_index(v, 0)) /
+              dim;
+            grid.points[node] = cell->vertex(v);
+            if (is_present)
+              grid.vertices.push_back(node);
+          }
+        if (!is_present)
+          continue;
+        auto field = grid.fields.begin() + n_vectors;
+        for (const double mean : means.means(c))
+          (field++)->values.push_back(mean);
+        field->values.push_back(cell->subdomain_id());
+        present.push_back(cell);
+      }
     const auto add_root = [&](const std::string    &name,
                               const Quantity        quantity,
                               const Vector<double> &squares) {
-      std::vector<float> roots;
-      for (const auto &cell : body.cells)
-        roots.push_back(std::sqrt(squares[cell->active_cell_index()]));
-      body.means.emplace_back(FieldColumn{name, 0, quantity}, std::move(roots));
+      grid.add_field(scene, {name, 0, quantity}, /* is_of_cells = */ true);
+      for (const auto &cell : present)
+        grid.fields.back().values.push_back(
+          std::sqrt(squares[cell->active_cell_index()]));
     };
     if (squared_estimate != nullptr)
       add_root("estimator", quantity_of_estimator(scene), *squared_estimate);
@@ -243,29 +255,23 @@ namespace Viscoplastic
                  squared_recovery_estimate(stress_space, state));
       }
 
-    const double degrees = scene.parameters.output.revolved_angle;
-    const bool   is_hdf5 = is_in_hdf5("solution");
-    if (is_hdf5)
-      write_in_hdf5(body, state.t);
-    if (is_hdf5 && degrees == 0.)
-      return;
-    BodyOutput<dim> output(scene, body);
     if constexpr (dim == 2)
-      if (degrees > 0.)
+      if (const double degrees = scene.parameters.output.revolved_angle;
+          degrees > 0.)
         {
           std::vector<std::pair<std::size_t, unsigned int>> edges;
-          for (std::size_t c = 0; c < body.cells.size(); ++c)
-            for (const unsigned int f : body.cells[c]->face_indices())
-              if (!is_on_axis(body.cells[c]->face(f)) &&
-                  (body.cells[c]->at_boundary(f) ||
-                   !scene.is_present(
-                     body.cells[c]->neighbor(f)->material_id())))
+          for (std::size_t c = 0; c < present.size(); ++c)
+            for (const unsigned int f : present[c]->face_indices())
+              if (!is_on_axis(present[c]->face(f)) &&
+                  (present[c]->at_boundary(f) ||
+                   !scene.is_present(present[c]->neighbor(f)->material_id())))
                 edges.emplace_back(c, f);
-          output.make_patches();
-          write_vtu("revolved", revolved(output, edges, degrees));
+          write_vtu("revolved", revolved(grid, edges, degrees));
         }
-    if (!is_hdf5)
-      write_vtu("solution", std::move(output));
+    if (is_in_hdf5("solution"))
+      write_in_hdf5(space, grid, state.t);
+    else
+      write_vtu("solution", std::move(grid));
   }
 
 
@@ -277,17 +283,17 @@ namespace Viscoplastic
                              const State<dim>       &state,
                              const ContactFace<dim> *face)
   {
-    const AdmissibleSpace<dim>   &space = stress_space.space;
-    const std::set<RecordedField> fields =
+    const AdmissibleSpace<dim> &space = stress_space.space;
+    std::set<RecordedField>     fields =
       BoundaryFields<dim>::of_output(scene, face);
     const BoundaryFields<dim> boundary(stress_space, state, face, fields);
-    PatchOutput<dim - 1, dim> output;
     DistributedVector         difference;
     const DistributedVector  &reported =
       reported_displacement(scene, state, difference);
-    output.add_field(scene, column_of(RecordedField::displacement));
+    OutputGrid<dim - 1, dim> grid;
+    fields.insert(RecordedField::displacement); // the first one
     for (const RecordedField field : fields)
-      output.add_field(scene, column_of(field));
+      grid.add_field(scene, column_of(field), /* is_of_cells = */ false);
 
     for (std::size_t c = 0; c < space.cells.size(); ++c)
       for (const unsigned int f : space.cells[c]->face_indices())
@@ -305,23 +311,26 @@ namespace Viscoplastic
                 !is_other :
                 space.scene.boundary.at(id).role != BoundaryRole::contact)
             continue;
-          auto &patch = output.add_patch();
           for (unsigned int i = 0; i < cell_face->n_vertices(); ++i)
             {
               const unsigned int v =
                 GeometryInfo<dim>::face_to_cell_vertices(f, i);
-              patch.vertices[i] = space.cells[c]->vertex(v);
+              grid.add_vertex(space.cells[c]->vertex(v));
               const double *u =
                 reported.begin() + space.relevant.index_within_set(
                                      space.cells[c]->vertex_dof_index(v, 0));
-              unsigned int row = 0;
-              for (unsigned int d = 0; d < dim; ++d)
-                patch.data(row++, i) = u[d];
-              for (const double value : boundary.values(c, f, v, normal))
-                patch.data(row++, i) = value;
+              std::vector<double> values = boundary.values(c, f, v, normal);
+              values.insert(values.begin(), u, u + dim);
+              const double *value = values.data();
+              for (OutputField &field : grid.fields)
+                for (unsigned int d = 0; d < (field.is_vector ? dim : 1); ++d)
+                  field.values.push_back(*value++);
             }
         }
-    write_vtu(name, std::move(output));
+    std::stable_partition(grid.fields.begin(),
+                          grid.fields.end(),
+                          [](const auto &field) { return field.is_vector; });
+    write_vtu(name, std::move(grid));
   }
 
 

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "vtu_output.h"
+#include "output_grid.h"
 #include <viscoplastic_contact/base/files.h>
-#include <viscoplastic_contact/results/line_output.h>
 #include <viscoplastic_contact/results/output.h>
 
 #include <filesystem>
@@ -70,8 +69,7 @@ namespace Viscoplastic
   bool
   Output<dim>::is_in_hdf5(const std::string &name) const
   {
-    return scene.parameters.output.in_hdf5 &&
-           (name == "solution" || name == "mesh");
+    return scene.parameters.output.in_hdf5 && name == "solution";
   }
 
 
@@ -94,80 +92,66 @@ namespace Viscoplastic
   {
     times = earlier;
     fail_together(communicator, [&]() {
-      if (Utilities::MPI::this_mpi_process(communicator) == 0)
-        for (const std::string &name : series())
-          {
-            const auto [file, text] = list(name);
-            replace_file(file, text);
-            remove_others(name, times.size());
-          }
+      if (Utilities::MPI::this_mpi_process(communicator) != 0)
+        return;
+      for (const std::string &name : series())
+        {
+          const auto [file, text] = list(name);
+          replace_file(file, text);
+        }
+      remove_unlisted_files();
     });
   }
 
 
 
   template <int dim>
-  std::size_t
-  Output<dim>::remove_others(const std::string &name,
-                             const std::size_t  n_outputs) const
+  void
+  Output<dim>::remove_unlisted_files() const
   {
-    if (Utilities::MPI::this_mpi_process(communicator) != 0)
-      return 0;
-    namespace fs             = std::filesystem;
-    const bool       is_hdf5 = is_in_hdf5(name);
-    const std::regex piece(
-      name + "_([0-9]{5,9})[.](pvtu|[0-9]+[.]vtu|xml|h5)([.]part)?");
+    namespace fs = std::filesystem;
+    std::set<std::string> listed;
     // Earlier parts of a run may have had other numbers of ranks and thus of
     // pieces, and new meshes at other times.
-    const auto is_listed = [&](const std::string &n, const std::string &file) {
-      std::ifstream list(
-        path + (is_hdf5 ? "solution_" + n + ".xml" : name + '_' + n + ".pvtu"));
-      std::stringstream text;
-      text << list.rdbuf();
-      return text.str().find((is_hdf5 ? '>' : '"') + file) != std::string::npos;
+    const auto add = [&](const std::string &record) {
+      static const std::regex file("[a-z]+_[0-9]+[.]([0-9]+[.]vtu|h5)");
+      listed.insert(record);
+      std::ifstream stream(path + record);
+      for (std::string line; std::getline(stream, line);)
+        for (std::sregex_iterator name(line.begin(), line.end(), file), end;
+             name != end;
+             ++name)
+          listed.insert(name->str());
     };
-    std::vector<fs::path> others;
-    std::error_code       error;
-    for (const auto &entry : fs::directory_iterator(path, error))
+    for (const std::string &name : series())
       {
-        const std::string file = entry.path().filename().string();
-        std::smatch       parts;
-        if (!std::regex_match(file, parts, piece))
-          continue;
-        const std::string ending = parts[2];
-        if (std::stoul(parts[1]) >= n_outputs ||
-            (ending == "xml" || ending == "h5") != is_hdf5 ||
-            (ending != "pvtu" && ending != "xml" && !is_listed(parts[1], file)))
-          others.push_back(entry.path());
+        listed.insert(fs::path(list(name).first).filename().string());
+        for (unsigned int n = 0; n < times.size(); ++n)
+          add(record_name(name, n) + (is_in_hdf5(name) ? ".xml" : ".pvtu"));
       }
-    for (const fs::path &file : others)
-      fs::remove(file, error);
-    return others.size();
-  }
+    if (!times.empty())
+      add(record_name("boundary", 0) + ".pvtu");
 
-
-
-  template <int dim>
-  void
-  Output<dim>::remove_files_of_earlier_run() const
-  {
-    const std::vector<std::string> present = series();
-    for (const std::string name :
-         {"boundary", "contact", "mesh", "opposite", "revolved", "solution"})
-      {
-        const std::size_t n_outputs =
-          name == "boundary" ? std::min<std::size_t>(1, times.size()) :
-          is_in_hdf5(name) ||
-              std::count(present.begin(), present.end(), name) > 0 ?
-                               times.size() :
-                               0;
-        if (std::error_code none; remove_others(name, n_outputs) > 0)
-          for (const std::string list : {".pvd", ".xdmf"})
-            if (n_outputs == 0 ||
-                (name == "solution" && is_in_hdf5(name) == (list == ".pvd")))
-              std::filesystem::remove(path + name + list, none);
-      }
-    remove_other_lines(path, scene.output_lines.size());
+    static const std::regex piece(
+      "(boundary|contact|mesh|opposite|revolved|solution)_[0-9]{5,9}[.]"
+      "(pvtu|[0-9]+[.]vtu|xml|h5)([.]part)?");
+    std::vector<std::string> others;
+    std::set<std::string>    with_others;
+    std::smatch              parts;
+    std::error_code          none;
+    for (const auto &entry : fs::directory_iterator(path, none))
+      if (const std::string file = entry.path().filename().string();
+          listed.count(file) == 0 && std::regex_match(file, parts, piece))
+        {
+          others.push_back(file);
+          with_others.insert(parts[1]);
+        }
+    for (const std::string &name : with_others)
+      for (const char *ending : {".pvd", ".xdmf"})
+        if (listed.count(name + ending) == 0)
+          others.push_back(name + ending);
+    for (const std::string &file : others)
+      fs::remove(path + file, none);
   }
 
 
@@ -176,6 +160,5 @@ namespace Viscoplastic
   VISCOPLASTIC_INSTANTIATE_MEMBER(Output, is_in_hdf5);
   VISCOPLASTIC_INSTANTIATE_MEMBER(Output, list);
   VISCOPLASTIC_INSTANTIATE_MEMBER(Output, resume);
-  VISCOPLASTIC_INSTANTIATE_MEMBER(Output, remove_others);
-  VISCOPLASTIC_INSTANTIATE_MEMBER(Output, remove_files_of_earlier_run);
+  VISCOPLASTIC_INSTANTIATE_MEMBER(Output, remove_unlisted_files);
 } // namespace Viscoplastic

@@ -16,8 +16,8 @@
 
 namespace Viscoplastic
 {
-  template <int dim>
-  struct BodyData;
+  template <int cell_dim, int dim>
+  struct OutputGrid;
   struct DataSet;
 
   /// Results in one directory: fields of the body (solution.pvd; revolved.pvd
@@ -98,14 +98,16 @@ namespace Viscoplastic
                   const ContactFace<dim> *face);
     /// Queue the piece of this rank and, on rank 0, the record of all pieces
     /// and that of the series for the next write_in_background().
-    template <typename Data>
+    template <typename Grid>
     void
     write_vtu(const std::string &name,
-              Data               data, // a PatchOutput
+              Grid               grid, // an OutputGrid
               const bool         is_series = true);
     /// As write_vtu(), for the body.
     void
-    write_in_hdf5(const BodyData<dim> &body, const double t);
+    write_in_hdf5(const AdmissibleSpace<dim> &space,
+                  const OutputGrid<dim, dim> &body,
+                  const double                t);
     /// Start writing the queued `files`; with several ranks, which leave no
     /// processor idle, write them at once.
     void
@@ -118,13 +120,10 @@ namespace Viscoplastic
     is_in_hdf5(const std::string &name) const;
     std::vector<std::string>
     series() const;
-    /// Remove outdated pieces of outputs on rank 0: those after the last
-    /// output, and those that no record lists. Returns their number.
-    std::size_t
-    remove_others(const std::string &name, const std::size_t n_outputs) const;
-    /// Remove files of an earlier run from the directory, on rank 0.
+    /// Remove files of fields, of earlier runs or of times after the last
+    /// output, that no list names. On one rank.
     void
-    remove_files_of_earlier_run() const;
+    remove_unlisted_files() const;
 
     const Scene<dim>   &scene;
     const MPI_Comm      communicator;

@@ -6,6 +6,7 @@
 #include <viscoplastic_contact/base/messages.h>
 #include <viscoplastic_contact/base/table.h>
 #include <viscoplastic_contact/base/version.h>
+#include <viscoplastic_contact/discretization/discretization.h>
 #include <viscoplastic_contact/mesh/mesh.h>
 #include <viscoplastic_contact/results/run_record.h>
 #include <viscoplastic_contact/run/scene_as_json.h>
@@ -64,116 +65,108 @@ namespace Viscoplastic
 
 
 
+    /// Return what the automatic choice of `Material/Volumetric integration'
+    /// stands for. Collective.
     template <int dim>
-    void
-    add_mesh(const Parameters &scene, const MPI_Comm communicator, Json &json)
+    VolumetricIntegration
+    volumetric_integration(
+      const Parameters                                &parameters,
+      const parallel::distributed::Triangulation<dim> &triangulation)
     {
-      parallel::distributed::Triangulation<dim> triangulation(communicator);
-      make_mesh(scene.geometry, triangulation);
-      json["cells"] = triangulation.n_global_active_cells();
-      json["h"]     = GridTools::maximal_cell_diameter(triangulation) /
-                  std::sqrt(static_cast<double>(dim));
-    }
-
-
-
-    /// Return Young's modulus and Poisson's ratio of the isotropic stiffness
-    /// nearest to that of a material, those of its Voigt averages.
-    template <int dim>
-    Json
-    isotropic_moduli(const Parameters         &scene,
-                     const std::string        &section,
-                     const MaterialParameters &material)
-    {
-      const Stiffness stiffness =
-        Material<dim>(section, material, scene.handler).stiffness(Point<dim>());
-      const double nu = stiffness.poissons_ratio();
-      return {2. * (1. + nu) * stiffness.shear_modulus(), nu};
+      Scene<dim> scene(parameters);
+      scene.inspect(triangulation);
+      double max_nu = -1.;
+      for (const auto &cell : triangulation.active_cell_iterators())
+        if (cell->is_locally_owned())
+          max_nu = std::max(max_nu,
+                            scene.material(cell->material_id())
+                              .stiffness(cell->center())
+                              .poissons_ratio());
+      max_nu = Utilities::MPI::max(max_nu, triangulation.get_communicator());
+      return uses_mean_dilatation(scene, max_nu) ?
+               VolumetricIntegration::mean_dilatation :
+               VolumetricIntegration::full;
     }
 
 
 
     /// Adds the means of the data of a scene to its record.
+    template <int dim>
     class Means
     {
     public:
-      Means(const Parameters &scene, const SceneData &data, Json &json)
+      Means(const Parameters &scene, const SceneData<dim> &data, Json &json)
         : scene(scene)
         , data(data)
         , json(json)
-      {
-        for (const char *name : {"means", "areas", "nearest_isotropic"})
-          json[name] = Json::object();
-      }
+      {}
 
       void
       add_all()
       {
+        for (const char *name : {"means", "areas", "nearest_isotropic"})
+          json[name] = Json::object();
         if (scene.materials.empty())
           add_material("Material", scene.material, {});
         for (const auto &[id, material] : scene.materials)
-          add_material("Material " + std::to_string(id), material, id);
+          add_material("Material " + std::to_string(id),
+                       material,
+                       {Domain::Kind::material, id});
         for (const auto &[id, boundary] : scene.boundaries)
           {
-            const std::string        section = "Boundary " + std::to_string(id);
-            std::vector<std::string> names   = boundary_data;
+            const Domain             domain{Domain::Kind::boundary, id};
+            std::vector<std::string> names = boundary_data;
             for (const LawEntry &entry : entries_of(friction_laws()))
               names.push_back(entry.name);
             for (const std::string &name : names)
-              add(section + '/' + name, [&, id = id](const std::string &text) {
-                return data.over_boundary(text, id);
-              });
+              add("Boundary " + std::to_string(id) + '/' + name, domain);
             if (boundary.role == BoundaryRole::contact)
-              json["areas"][std::to_string(id)] = data.area(id);
+              json["areas"][std::to_string(id)] = data.measure(domain);
           }
         for (const char *path : {"Loads/Body force", "Temperature/Value"})
-          add(path,
-              [&](const std::string &text) { return data.over_body(text); });
+          add(path, {});
       }
 
     private:
       void
-      add_material(const std::string                &section,
-                   const MaterialParameters         &material,
-                   const std::optional<unsigned int> id)
+      add_material(const std::string        &section,
+                   const MaterialParameters &material,
+                   const Domain             &domain)
       {
-        const auto over_space = [&](const std::string &text) {
-          return data.over_body(text, id);
-        };
+        // The nearest isotropic stiffness has the same Voigt averages.
         if (!material.voigt_matrix.empty())
-          json["nearest_isotropic"][section] =
-            scene.dimension == 2 ?
-              isotropic_moduli<2>(scene, section, material) :
-              isotropic_moduli<3>(scene, section, material);
+          {
+            const Stiffness stiffness =
+              Material<dim>(section, material, scene.handler)
+                .stiffness(Point<dim>());
+            const double nu                    = stiffness.poissons_ratio();
+            json["nearest_isotropic"][section] = {2. * (1. + nu) *
+                                                    stiffness.shear_modulus(),
+                                                  nu};
+          }
         const std::string of_law = section + '/' + material.law + '/';
-        for (const auto &entry : values)
-          if (const std::string &path = entry.first;
-              path == section + "/Young's modulus" ||
+        for (const auto &[path, text] : values)
+          if (path == section + "/Young's modulus" ||
               path == section + "/Poisson's ratio" ||
               path == section + "/Thermal expansion" ||
               // The strain rate of a parsed law, and parameters that depend on
               // T, are not functions of x and t alone.
-              (!mentions(entry.second, "T") &&
+              (!mentions(text, "T") &&
                path.compare(0, of_law.size(), of_law) == 0 &&
                path != of_law + "Strain rate"))
-            add(path, over_space);
+            add(path, domain);
       }
 
-      template <typename OverSpace>
       void
-      add(const std::string &path, const OverSpace &over_space)
+      add(const std::string &path, const Domain &domain)
       {
-        const std::string &text = values.at(path);
-        if (text.empty())
-          return;
         try
           {
-            const auto in_space = over_space(text),
-                       in_time  = data.over_time(text);
-            if (in_space)
-              json["means"][path]["over_space"] = *in_space;
-            if (in_time)
-              json["means"][path]["over_time"] = *in_time;
+            const std::string &text = values.at(path);
+            if (const auto mean = data.over_space(text, domain))
+              json["means"][path]["over_space"] = *mean;
+            if (const auto mean = data.over_time(text))
+              json["means"][path]["over_time"] = *mean;
           }
         catch (const ExpressionError &)
           {} // entries that are no expressions, such as choices
@@ -181,9 +174,32 @@ namespace Viscoplastic
 
       const Parameters                        &scene;
       const std::map<std::string, std::string> values = scene.values();
-      const SceneData                         &data;
+      const SceneData<dim>                    &data;
       Json                                    &json;
     };
+
+
+
+    /// Add what depends on the mesh. Collective.
+    template <int dim>
+    void
+    add_mesh(const Parameters &scene,
+             const bool        with_means,
+             const MPI_Comm    communicator,
+             Json             &json)
+    {
+      parallel::distributed::Triangulation<dim> triangulation(communicator);
+      make_mesh(scene.geometry, triangulation);
+      json["cells"] = triangulation.n_global_active_cells();
+      json["h"]     = GridTools::maximal_cell_diameter(triangulation) /
+                  std::sqrt(static_cast<double>(dim));
+      json["volumetric_integration"] =
+        name_of(volumetric_integration(scene, triangulation));
+      for (const auto &[place, name] : PlaceNames(scene).names)
+        json["names"][place.text()] = name;
+      if (with_means)
+        Means<dim>(scene, SceneData<dim>(scene, triangulation), json).add_all();
+    }
   } // namespace
 
 
@@ -203,15 +219,9 @@ namespace Viscoplastic
               {"values", values_in_use(scene)},
               {"files", checksum_of_files(scene)}};
     if (scene.dimension == 2)
-      add_mesh<2>(scene, communicator, json);
+      add_mesh<2>(scene, with_means, communicator, json);
     else
-      add_mesh<3>(scene, communicator, json);
-    const auto data                = SceneData::of(scene, communicator);
-    json["volumetric_integration"] = name_of(data->volumetric_integration());
-    for (const auto &[place, name] : PlaceNames(scene).names)
-      json["names"][place.text()] = name;
-    if (with_means)
-      Means(scene, *data, json).add_all();
+      add_mesh<3>(scene, with_means, communicator, json);
     return json_text(json);
   }
 } // namespace Viscoplastic

@@ -5,6 +5,7 @@
 #include "folder.h"
 #include <viscoplastic_contact/base/expression.h>
 #include <viscoplastic_contact/laws/stiffness.h>
+#include <viscoplastic_contact/mesh/mesh.h>
 #include <viscoplastic_contact/run/scene_as_json.h>
 #include <viscoplastic_contact/run/scene_data.h>
 
@@ -21,15 +22,19 @@ namespace
 
 
   /// A box of two materials, with hanging nodes, and its data.
+  template <int dim>
   struct Box
   {
-    explicit Box(const unsigned int dim, const std::string &more = "")
-      : scene({folder.add("scene.prm", text(dim, more))})
-      , data(SceneData::of(scene, MPI_COMM_WORLD))
-    {}
+    explicit Box(const std::string &more = "")
+      : scene({folder.add("scene.prm", text(more))})
+      , mesh(MPI_COMM_WORLD)
+      , data(scene, mesh)
+    {
+      make_mesh(scene.geometry, mesh);
+    }
 
     static std::string
-    text(const unsigned int dim, const std::string &more)
+    text(const std::string &more)
     {
       std::string result = "set Dimension = " + std::to_string(dim) +
                            "\nsubsection Geometry\nset Arguments = " +
@@ -44,9 +49,10 @@ namespace
       return result + more;
     }
 
-    Folder                           folder;
-    const Parameters                 scene;
-    std::unique_ptr<const SceneData> data;
+    Folder                                    folder;
+    const Parameters                          scene;
+    parallel::distributed::Triangulation<dim> mesh;
+    const SceneData<dim>                      data;
   };
 
 
@@ -61,64 +67,87 @@ namespace
 
   TEST(SceneData, MeansOverABoundary)
   {
-    const Box square(2), cube(3);
-    EXPECT_NEAR(value(*square.data->over_boundary("x^2", 2), 0., 0.),
+    const Box<2> square;
+    const Box<3> cube;
+    EXPECT_NEAR(value(*square.data.over_space("x^2",
+                                              {Domain::Kind::boundary, 2}),
+                      0.,
+                      0.),
                 4. / 3.,
                 1e-14);
-    EXPECT_NEAR(value(*square.data->over_boundary("x + y^3", 1), 0., 0.),
+    EXPECT_NEAR(value(*square.data.over_space("x + y^3",
+                                              {Domain::Kind::boundary, 1}),
+                      0.,
+                      0.),
                 2.25,
                 1e-14);
-    EXPECT_NEAR(value(*cube.data->over_boundary("x^2*y + z", 4), 0., 0.),
+    EXPECT_NEAR(value(*cube.data.over_space("x^2*y + z",
+                                            {Domain::Kind::boundary, 4}),
+                      0.,
+                      0.),
                 2. / 3.,
                 1e-14);
     // Data that do not vary in space need no mean.
-    EXPECT_NEAR(square.data->area(2), 2., 1e-12);
-    EXPECT_NEAR(cube.data->area(4), 2., 1e-12);
-    EXPECT_FALSE(square.data->over_boundary("3*t; 2", 2));
-    EXPECT_FALSE(square.data->over_boundary("", 2));
+    EXPECT_NEAR(square.data.measure({Domain::Kind::boundary, 2}), 2., 1e-12);
+    EXPECT_NEAR(cube.data.measure({Domain::Kind::boundary, 4}), 2., 1e-12);
+    EXPECT_FALSE(square.data.over_space("3*t; 2", {Domain::Kind::boundary, 2}));
+    EXPECT_FALSE(square.data.over_space("", {Domain::Kind::boundary, 2}));
   }
 
 
 
   TEST(SceneData, MeansOverTheBodyAndItsMaterials)
   {
-    const Box square(2), cube(3);
-    EXPECT_NEAR(value(*square.data->over_body("x*y"), 0., 0.), 0.5, 1e-14);
-    EXPECT_NEAR(value(*square.data->over_body("x", 0), 0., 0.), 0.5, 1e-14);
-    EXPECT_NEAR(value(*cube.data->over_body("x*y*z", 7), 0., 0.), 0.375, 1e-14);
+    const Box<2> square;
+    const Box<3> cube;
+    EXPECT_NEAR(value(*square.data.over_space("x*y", {}), 0., 0.), 0.5, 1e-14);
+    EXPECT_NEAR(value(*square.data.over_space("x", {Domain::Kind::material, 0}),
+                      0.,
+                      0.),
+                0.5,
+                1e-14);
+    EXPECT_NEAR(value(*cube.data.over_space("x*y*z",
+                                            {Domain::Kind::material, 7}),
+                      0.,
+                      0.),
+                0.375,
+                1e-14);
   }
 
 
 
   TEST(SceneData, ChangesInTimeStay)
   {
-    const Box         square(2);
-    const std::string mean = *square.data->over_boundary("x*t^2", 3);
+    const Box<2>      square;
+    const std::string mean =
+      *square.data.over_space("x*t^2", {Domain::Kind::boundary, 3});
     // The mean is exact at the ends of steps and linear between them.
     for (const double t : {0., 0.25, 0.5, 0.75, 1., 2., 3.})
       EXPECT_NEAR(value(mean, 0., t), t * t, 1e-13);
     EXPECT_NEAR(value(mean, 0., 2.5), 6.5, 1e-13);
     // Components without a value stay without one.
-    EXPECT_EQ(*square.data->over_boundary("free; 0*x", 2), "free; 0");
-    EXPECT_EQ(*square.data->over_boundary("t; x*0", 2), "t; 0");
+    EXPECT_EQ(*square.data.over_space("free; 0*x", {Domain::Kind::boundary, 2}),
+              "free; 0");
+    EXPECT_EQ(*square.data.over_space("t; x*0", {Domain::Kind::boundary, 2}),
+              "t; 0");
   }
 
 
 
   TEST(SceneData, MeansOverTheRun)
   {
-    const Box square(2);
-    EXPECT_NEAR(value(*square.data->over_time("t^3"), 0., 7.), 6.75, 1e-13);
+    const Box<2> square;
+    EXPECT_NEAR(value(*square.data.over_time("t^3"), 0., 7.), 6.75, 1e-13);
     // The datum has a kink at the end of a phase.
-    EXPECT_NEAR(value(*square.data->over_time("min(t, 1)"), 0., 7.),
+    EXPECT_NEAR(value(*square.data.over_time("min(t, 1)"), 0., 7.),
                 2.5 / 3.,
                 1e-14);
     // The mean over time still varies in space; the letter t in other names is
     // not the time.
-    const std::string mean = *square.data->over_time("sqrt(x)*t^2 + tan(0)*t");
+    const std::string mean = *square.data.over_time("sqrt(x)*t^2 + tan(0)*t");
     for (const double x : {0., 1., 4.})
       EXPECT_NEAR(value(mean, x, 7.), 3. * std::sqrt(x), 1e-13);
-    EXPECT_FALSE(square.data->over_time("x; "));
+    EXPECT_FALSE(square.data.over_time("x; "));
   }
 
 
@@ -126,19 +155,19 @@ namespace
   TEST(SceneData, WhatAutomaticStandsFor)
   {
     const auto of = [](const std::string &material) {
-      return Box(2,
-                 "subsection Material 0\nend\nsubsection Material 7\n" +
-                   material + "end\n")
-        .data->volumetric_integration();
+      const Box<2> box("subsection Material 0\nend\nsubsection Material 7\n" +
+                       material + "end\n");
+      return nlohmann::json::parse(scene_as_json(
+        box.scene, false, MPI_COMM_WORLD))["volumetric_integration"];
     };
-    EXPECT_EQ(of(""), VolumetricIntegration::full);
+    EXPECT_EQ(of(""), name_of(VolumetricIntegration::full));
     EXPECT_EQ(of("set Law = maxwell\n"),
-              VolumetricIntegration::mean_dilatation);
+              name_of(VolumetricIntegration::mean_dilatation));
     EXPECT_EQ(of("set Poisson's ratio = 0.3 + 0.1*x\n"),
-              VolumetricIntegration::mean_dilatation);
+              name_of(VolumetricIntegration::mean_dilatation));
     EXPECT_EQ(of("set Law = maxwell\nend\nsubsection Material\n"
                  "set Volumetric integration = full\n"),
-              VolumetricIntegration::full);
+              name_of(VolumetricIntegration::full));
   }
 
 
@@ -165,7 +194,7 @@ namespace
   {
     const Folder     folder;
     const Parameters scene(
-      {folder.add("scene.prm", Box::text(2, "")),
+      {folder.add("scene.prm", Box<2>::text("")),
        folder.add("more.prm",
                   "subsection Material 0\n"
                   "set Young's modulus = 1 + x\nend\n"

@@ -1,55 +1,76 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
+#include <deal.II/distributed/tria.h>
+
 #include <viscoplastic_contact/parameters/parameter_file.h>
+#include <viscoplastic_contact/parameters/time_schedule.h>
 
-#include <mpi.h>
-
-#include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace Viscoplastic
 {
-  /// Means of the data of a scene over space or time, and properties of its
-  /// mesh. Means are expressions of x and t, by component of a vector, which
-  /// can replace those of the parameter file; absent if data equal their means.
-  /// Means over space are collective. Throws ExcMessage for unparsable data.
+  /// A boundary, a material or the body.
+  struct Domain
+  {
+    enum class Kind
+    {
+      body,
+      boundary,
+      material
+    };
+
+    Kind         kind = Kind::body;
+    unsigned int id   = 0;
+  };
+
+
+
+  /// Means of the data of a scene over space or time. Means are expressions of
+  /// x and t, by component of a vector, which can replace those of the
+  /// parameter file; absent if data equal their means. Throws ExcMessage for
+  /// unparsable data.
+  template <int dim>
   class SceneData
   {
   public:
-    virtual ~SceneData() = default;
+    using Mesh = parallel::distributed::Triangulation<dim>;
+    using Mean = std::optional<std::string>;
 
-    /// The mean over a boundary, as an expression of t that is exact at the
-    /// ends of all steps and linear between them.
-    virtual std::optional<std::string>
-    over_boundary(const std::string &components,
-                  const unsigned int id) const = 0;
+    /// Keeps references to both arguments.
+    SceneData(const Parameters &scene, const Mesh &triangulation);
 
-    /// The mean over the cells of a material, or over all cells, likewise.
-    virtual std::optional<std::string>
-    over_body(const std::string                &components,
-              const std::optional<unsigned int> material = {}) const = 0;
+    /// The mean over a domain, as an expression of t that is exact at the ends
+    /// of all steps and linear between them. Collective.
+    Mean
+    over_space(const std::string &components, const Domain &domain) const;
 
     /// The mean over the run, as an expression of x. Data that are uniform in
     /// space are integrated by two Gauss points per step, others by two Gauss
     /// points in each of up to eight parts of a phase.
-    virtual std::optional<std::string>
-    over_time(const std::string &components) const = 0;
+    Mean
+    over_time(const std::string &components) const;
 
-    /// The area of a boundary; in 2D its length. Collective.
-    virtual double
-    area(const unsigned int id) const = 0;
+    /// The volume, area or, in 2D, length of a domain. Collective.
+    double
+    measure(const Domain &domain) const;
 
-    /// `Material/Volumetric integration', with `automatic' resolved.
-    /// Collective.
-    virtual VolumetricIntegration
-    volumetric_integration() const = 0;
+  private:
+    /// Quadrature points of a domain with their weights, on this rank.
+    std::vector<std::pair<Point<dim>, double>>
+    quadrature(const Domain &domain) const;
 
-    /// Return the data of a scene on its first mesh. Collective.
-    static std::unique_ptr<const SceneData>
-    of(const Parameters &scene, const MPI_Comm communicator);
+    /// Return the quadrature in time of an expression, with numbers for t.
+    std::string
+    time_mean_of_text(const std::string &text) const;
+
+    const Parameters   &parameters;
+    const Mesh         &triangulation;
+    const TimeSchedule  schedule;
+    std::vector<double> times; // zero and the ends of steps
   };
 
 

@@ -9,6 +9,7 @@
 #include <viscoplastic_contact/mesh/mesh.h>
 #include <viscoplastic_contact/mesh/mesh_size.h>
 #include <viscoplastic_contact/results/recorder.h>
+#include <viscoplastic_contact/run/announcer.h>
 #include <viscoplastic_contact/run/plausibility.h>
 #include <viscoplastic_contact/run/scene_check.h>
 #include <viscoplastic_contact/time_stepping/explicit_step.h>
@@ -23,7 +24,7 @@ namespace Viscoplastic
       const Scene<dim>                                &scene,
       const parallel::distributed::Triangulation<dim> &triangulation,
       StepControl                                     &control,
-      Announcer<dim>                                  *announcer)
+      Console                                         *console)
     {
       control.land_on(scene.stage_ends, {});
       // Steps of given size use kinks only for the estimate of their error.
@@ -33,8 +34,8 @@ namespace Viscoplastic
       const KinksOfScene found = kinks_of_scene(scene, triangulation);
       if (found.kinks.empty())
         return;
-      if (announcer != nullptr && control.is_on)
-        announcer->announce(found);
+      if (console != nullptr && control.is_on)
+        announce_kinks(found, *console);
       std::vector<double> kinks, jumps;
       for (const Kink &kink : found.kinks)
         (kink.is_jump ? jumps : kinks).push_back(kink.t);
@@ -71,42 +72,6 @@ namespace Viscoplastic
               << "; the largest step is " << largest.k
               << scene.unit(Quantity::time) << '\n';
         }
-    }
-
-
-
-    /// Refuse initial data that violate (2.12); otherwise set their contact
-    /// multipliers.
-    template <int dim>
-    void
-    check_compatibility(const Discretization<dim> &discretization,
-                        State<dim>                &initial,
-                        const Load<dim>           &load)
-    {
-      constexpr double                  tolerance = 1e-6;
-      const CompatibilityViolation<dim> violation =
-        compatibility_violation(discretization.space,
-                                load,
-                                discretization.face.get(),
-                                initial.u,
-                                initial.contact);
-      // Manufactured data are in equilibrium up to quadrature errors.
-      const auto &solution = discretization.scene().exact_solution;
-      if (solution && solution->makes_data)
-        return;
-      if (!(violation.relative <= tolerance))
-        refuse("The initial data are not in equilibrium with the loads at t = "
-               "0, (2.12): the relative violation is " +
-               as_text(violation.relative) + ", more than " +
-               as_text(tolerance) + "; it is largest " +
-               (violation.is_axial ?
-                  "in 'Loads/Axial force'" :
-                  "at x = (" + as_text(violation.position) + "), " +
-                    (violation.boundaries.empty() ?
-                       "inside of the body" :
-                       "on boundary " + list(violation.boundaries))) +
-               "; start with loads that the initial stress balances, or set "
-               "'Initial state/Equilibrate'.");
     }
 
 
@@ -203,7 +168,7 @@ namespace Viscoplastic
   make_first_mesh(Scene<dim>                                &scene,
                   parallel::distributed::Triangulation<dim> &triangulation,
                   StepControl                               &control,
-                  Announcer<dim>                            *announcer)
+                  Console                                   *console)
   {
     make_mesh(scene.parameters.geometry, triangulation);
     scene.inspect(triangulation);
@@ -212,9 +177,9 @@ namespace Viscoplastic
       refuse("'Step control/Tolerance' needs an estimate of the error; set "
              "'Error control/Error bar' = true.");
     control.set_has_estimate(scene.has_viscosity());
-    if (announcer != nullptr)
-      announcer->announce(scene);
-    land_on_kinks(scene, triangulation, control, announcer);
+    if (console != nullptr)
+      announce_scene(scene, *console);
+    land_on_kinks(scene, triangulation, control, console);
   }
 
 
@@ -237,46 +202,39 @@ namespace Viscoplastic
   }
 
 
+
   template <int dim>
-  bool
-  resolve_initial_data(const Discretization<dim> &discretization,
-                       const ErrorEstimator<dim> *error_estimator,
-                       MeshController<dim>       &mesh_controller,
-                       TimeStepper<dim>          &time_stepper,
-                       EvaluatedState<dim>       &accepted)
+  void
+  check_compatibility(const Discretization<dim> &discretization,
+                      State<dim>                &initial,
+                      const Load<dim>           &load)
   {
-    const Scene<dim> &scene       = discretization.scene();
-    const bool        equilibrate = scene.parameters.initial_state.equilibrate;
-    accepted.state =
-      make_initial_state(discretization.stress_space, equilibrate);
-    accepted.rate.reset();
-    if (error_estimator != nullptr)
-      {
-        const Vector<double> squared_errors =
-          error_estimator->begin(discretization.stress_space, accepted);
-        if (mesh_controller.mark_first(discretization,
-                                       accepted,
-                                       &squared_errors))
-          return false;
-      }
-    if (equilibrate)
-      time_stepper.equilibrate(accepted);
-    else
-      {
-        const Load<dim> load = discretization.loads.assemble(0.);
-        check_compatibility(discretization, accepted.state, load);
-        accepted.forces = evaluate_forces(discretization.stress_space,
-                                          discretization.matrix,
-                                          load,
-                                          accepted.state);
-      }
-    if (scene.is_adaptive() || equilibrate)
-      time_stepper.estimate(accepted);
-    if (error_estimator == nullptr || !equilibrate)
-      return true;
-    error_estimator->assess_equilibrium(accepted);
-    return !mesh_controller.mark_first(discretization, accepted, nullptr);
+    constexpr double                  tolerance = 1e-6;
+    const CompatibilityViolation<dim> violation =
+      compatibility_violation(discretization.space,
+                              load,
+                              discretization.face.get(),
+                              initial.u,
+                              initial.contact);
+    // Manufactured data are in equilibrium up to quadrature errors.
+    const auto &solution = discretization.scene().exact_solution;
+    if (solution && solution->makes_data)
+      return;
+    if (!(violation.relative <= tolerance))
+      refuse("The initial data are not in equilibrium with the loads at t = "
+             "0, (2.12): the relative violation is " +
+             as_text(violation.relative) + ", more than " + as_text(tolerance) +
+             "; it is largest " +
+             (violation.is_axial ?
+                "in 'Loads/Axial force'" :
+                "at x = (" + as_text(violation.position) + "), " +
+                  (violation.boundaries.empty() ?
+                     "inside of the body" :
+                     "on boundary " + list(violation.boundaries))) +
+             "; start with loads that the initial stress balances, or set "
+             "'Initial state/Equilibrate'.");
   }
+
 
 
   template <int dim>
@@ -323,7 +281,6 @@ namespace Viscoplastic
   check_scene(const Parameters &parameters, Console &console)
   {
     std::ostream                             &out = console.stream();
-    Announcer<dim>                            announcer(console);
     Scene<dim>                                scene(parameters);
     parallel::distributed::Triangulation<dim> triangulation(MPI_COMM_WORLD);
     const FESystem<dim>                       fe(FE_Q<dim>(1), dim);
@@ -332,11 +289,12 @@ namespace Viscoplastic
     StepControl control(parameters, scene.schedule, budget.get());
     TimerOutput timer(out, TimerOutput::never, TimerOutput::wall_times);
 
-    make_first_mesh(scene, triangulation, control, &announcer);
+    make_first_mesh(scene, triangulation, control, &console);
     check_stages(fe, dof_handler, scene);
     distribute_nodes(fe, dof_handler);
     const Discretization<dim> d(dof_handler, scene);
-    announcer.announce(d);
+    announce_first_mesh(d, console);
+    warn_of_held_faces(d, console);
     // This throws if output points, lines or integrals are wrong.
     Recorder<dim>(scene, control, console, timer, budget.get()).set_mesh(d);
     for (const std::string &doubt : implausible_data(d, out))
@@ -372,7 +330,7 @@ namespace Viscoplastic
 
   VISCOPLASTIC_INSTANTIATE(make_first_mesh);
   VISCOPLASTIC_INSTANTIATE(check_stages);
-  VISCOPLASTIC_INSTANTIATE(resolve_initial_data);
+  VISCOPLASTIC_INSTANTIATE(check_compatibility);
   VISCOPLASTIC_INSTANTIATE(check_steps);
   VISCOPLASTIC_INSTANTIATE(check_scene);
 } // namespace Viscoplastic

@@ -1,22 +1,22 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <deal.II/fe/fe_q.h>
 
+#include <viscoplastic_contact/discretization/initial_state.h>
 #include <viscoplastic_contact/mesh/mesh_refinement.h>
+#include <viscoplastic_contact/run/announcer.h>
+#include <viscoplastic_contact/run/passes.h>
 #include <viscoplastic_contact/run/scene_check.h>
-#include <viscoplastic_contact/run/state_carrier.h>
 #include <viscoplastic_contact/run/viscoplastic_contact.h>
 
 namespace Viscoplastic
 {
   template <int dim>
   ViscoplasticContact<dim>::ViscoplasticContact(const Parameters &parameters,
-                                                Console          &console,
-                                                const PilotRun   &pilot_run)
+                                                Console          &console)
     : scene(parameters)
     , triangulation(MPI_COMM_WORLD)
     , fe(FE_Q<dim>(1), dim)
     , dof_handler(triangulation)
-    , pilot_run(pilot_run)
     , budget(ErrorBudget::of_run(parameters))
     , control(parameters, scene.schedule, budget.get())
     , mesh_controller(scene, triangulation, budget.get())
@@ -24,7 +24,6 @@ namespace Viscoplastic
                         std::make_unique<ErrorEstimator<dim>>(scene) :
                         nullptr)
     , console(console)
-    , announcer(console)
     , timer(console.stream(), TimerOutput::never, TimerOutput::wall_times)
     , known_solution(scene, timer)
     , recorder(scene, control, console, timer, budget.get())
@@ -39,7 +38,7 @@ namespace Viscoplastic
   {
     files.emplace(run_state, console, timer, triangulation.get_communicator());
     if (!pass.follows_another)
-      make_first_mesh(scene, triangulation, control, &announcer);
+      make_first_mesh(scene, triangulation, control, &console);
     known_solution.check();
     if (const auto checkpoint = files->find_checkpoint(restart))
       {
@@ -94,7 +93,7 @@ namespace Viscoplastic
             continue;
           }
         record_initial_state();
-        announcer.announce_solver(time_stepper->method().solver_name());
+        announce_solver();
         recorder.record(accepted,
                         step,
                         known_solution.errors(*discretization, step.end.state));
@@ -119,7 +118,7 @@ namespace Viscoplastic
   RunSummary<dim>
   ViscoplasticContact<dim>::run_without_files()
   {
-    make_first_mesh<dim>(scene, triangulation, control, nullptr);
+    make_first_mesh(scene, triangulation, control, nullptr);
     begin();
     make_steps();
     recorder.check_sizes(/* at_end = */ true);
@@ -152,7 +151,7 @@ namespace Viscoplastic
   ViscoplasticContact<dim>::follow(const ViscoplasticContact<dim> &earlier)
   {
     pass.follows_another = true;
-    make_first_mesh<dim>(scene, triangulation, control, nullptr);
+    make_first_mesh(scene, triangulation, control, nullptr);
     refine_like(earlier.triangulation, triangulation);
     budget->expected_size = earlier.budget->expected_size;
     if (earlier.is_finished())
@@ -173,7 +172,8 @@ namespace Viscoplastic
         if (!pass.follows_another)
           {
             TimerOutput::Scope phase(timer, "pilot run");
-            remark = pilot_run(*budget, control, triangulation);
+            remark =
+              pilot_run(scene.parameters, *budget, control, triangulation);
           }
         control.expect_size(budget->expected_size);
       }
@@ -229,8 +229,9 @@ namespace Viscoplastic
   ViscoplasticContact<dim>::set_up()
   {
     // Later set-ups are timed as part of the adaptation.
+    const bool                        is_first = !discretization;
     std::optional<TimerOutput::Scope> scope;
-    if (!discretization)
+    if (is_first)
       scope.emplace(timer, "set-up");
     distribute_nodes(fe, dof_handler);
     // Free the old matrix and factors, which use most memory, first.
@@ -243,8 +244,10 @@ namespace Viscoplastic
                                                       error_estimator.get(),
                                                       control,
                                                       timer);
-    announcer.announce(*discretization);
-    announcer.announce_solver(time_stepper->method().solver_name());
+    if (is_first)
+      announce_first_mesh(*discretization, console);
+    warn_of_held_faces(*discretization, console);
+    announce_solver();
     recorder.set_mesh(*discretization);
     if (files)
       files->set_mesh(*discretization);
@@ -256,18 +259,64 @@ namespace Viscoplastic
   void
   ViscoplasticContact<dim>::set_initial_state(bool mesh_changes)
   {
-    for (; mesh_changes || !resolve_initial_data(*discretization,
-                                                 error_estimator.get(),
-                                                 mesh_controller,
-                                                 *time_stepper,
-                                                 accepted);
-         mesh_changes = false)
+    for (; mesh_changes || !resolve_initial_data(); mesh_changes = false)
       {
         TimerOutput::Scope phase(timer, "adaptation");
         triangulation.execute_coarsening_and_refinement();
         set_up();
       }
-    announcer.announce_equilibrium(scene, accepted.state);
+    announce_equilibrium(scene, accepted.state, console);
+  }
+
+
+
+  template <int dim>
+  bool
+  ViscoplasticContact<dim>::resolve_initial_data()
+  {
+    const bool equilibrate = scene.parameters.initial_state.equilibrate;
+    accepted.state =
+      make_initial_state(discretization->stress_space, equilibrate);
+    accepted.rate.reset();
+    if (error_estimator)
+      {
+        const Vector<double> squared_errors =
+          error_estimator->begin(discretization->stress_space, accepted);
+        if (mesh_controller.mark_first(*discretization,
+                                       accepted,
+                                       &squared_errors))
+          return false;
+      }
+    if (equilibrate)
+      time_stepper->equilibrate(accepted);
+    else
+      {
+        const Load<dim> load = discretization->loads.assemble(0.);
+        check_compatibility(*discretization, accepted.state, load);
+        accepted.forces = evaluate_forces(discretization->stress_space,
+                                          discretization->matrix,
+                                          load,
+                                          accepted.state);
+      }
+    if (scene.is_adaptive() || equilibrate)
+      time_stepper->estimate(accepted);
+    if (!error_estimator || !equilibrate)
+      return true;
+    error_estimator->assess_equilibrium(accepted);
+    return !mesh_controller.mark_first(*discretization, accepted, nullptr);
+  }
+
+
+
+  template <int dim>
+  void
+  ViscoplasticContact<dim>::announce_solver()
+  {
+    const std::string name = time_stepper->method().solver_name();
+    if (name.empty() || name == solver_name)
+      return;
+    solver_name = name;
+    console.stream() << "Linear solver: " << name << std::endl;
   }
 
 
@@ -299,45 +348,13 @@ namespace Viscoplastic
         pass.has_changed_mesh = true;
       }
     control.repeat();
-    announcer.announce_refinement(step.time_step.n,
-                                  mesh_controller.excess(),
-                                  triangulation.n_global_active_cells());
+    const double excess = mesh_controller.excess();
+    console.stream() << "  mesh "
+                     << (excess >= 1.005 ? number(excess, 3) + " times " : "")
+                     << "too coarse for step " << step.time_step.n
+                     << ", refined to " << triangulation.n_global_active_cells()
+                     << " cells" << std::endl;
     return true;
-  }
-
-
-
-  template <int dim>
-  void
-  ViscoplasticContact<dim>::change_mesh()
-  {
-    TimerOutput::Scope phase(timer, "adaptation");
-    recorder.record_mesh_change(carry_to_marked_mesh(
-      error_estimator.get(),
-      discretization,
-      time_stepper,
-      triangulation,
-      [this] { set_up(); },
-      accepted));
-  }
-
-
-
-  template <int dim>
-  void
-  ViscoplasticContact<dim>::enter_next_stage()
-  {
-    TimerOutput::Scope phase(timer, "adaptation");
-    const auto         begin_stage = [this] {
-      scene.enter_stage(scene.stage() + 1);
-      set_up();
-    };
-    recorder.record_stage(carry_to_stage(error_estimator.get(),
-                                         discretization,
-                                         time_stepper,
-                                         begin_stage,
-                                         accepted));
-    announcer.announce_stage(scene);
   }
 
 

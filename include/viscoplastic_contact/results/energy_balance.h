@@ -28,13 +28,6 @@ namespace Viscoplastic
 
 
 
-  struct EnergyChange
-  {
-    EnergiesOnMesh before, after;
-  };
-
-
-
   /// The balance of energy over a run,
   ///
   ///     external work + work of heating = change of the stored energy

@@ -87,22 +87,14 @@ namespace Viscoplastic
       return !run.at_end.empty();
     }
 
-    /// Add a change of the mesh between two steps, which changes the energies
-    /// of the state, to the energy balance.
+    /// Add a change of mesh or stage between two steps to the energy balance,
+    /// see EnergyBalance::add_change().
     void
-    record_mesh_change(const EnergyChange &change)
+    record_change(const EnergiesOnMesh &before,
+                  const EnergiesOnMesh &after,
+                  double EnergyBalance::*beyond)
     {
-      balance.add_change(change.before,
-                         change.after,
-                         balance.adaptation_energy);
-    }
-
-    void
-    record_stage(const EnergyChange &change)
-    {
-      balance.add_change(change.before,
-                         change.after,
-                         balance.construction_energy);
+      balance.add_change(before, after, balance.*beyond);
     }
 
     /// Continue from a state that earlier parts of the run have reached in @p

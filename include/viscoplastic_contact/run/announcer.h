@@ -5,75 +5,44 @@
 #include <viscoplastic_contact/discretization/discretization.h>
 #include <viscoplastic_contact/scene/kinks_in_time.h>
 
-#include <set>
-#include <string>
-
 namespace Viscoplastic
 {
-  /// Tells the user what is simulated: the effects of a scene, the size of its
-  /// mesh, the linear solver, and warnings about them. Warnings that may recur
-  /// on later meshes are printed once.
+  // Tell the user what is simulated, with warnings, of which the console prints
+  // each once.
+
+  /// The effects of a scene.
   template <int dim>
-  class Announcer
-  {
-  public:
-    explicit Announcer(Console &console)
-      : console(console)
-    {}
+  void
+  announce_scene(const Scene<dim> &scene, Console &console);
 
-    void
-    announce(const Scene<dim> &scene);
+  /// The kinks and jumps of data at which steps will end.
+  void
+  announce_kinks(const KinksOfScene &found, Console &console);
 
-    /// Announce the kinks and jumps of data at which steps will end.
-    void
-    announce(const KinksOfScene &found);
+  /// How far the body has moved into equilibrium at t = 0.
+  template <int dim>
+  void
+  announce_equilibrium(const Scene<dim> &scene,
+                       const State<dim> &initial,
+                       Console          &console);
 
-    /// Announce how far the body has moved into equilibrium at t = 0.
-    void
-    announce_equilibrium(const Scene<dim> &scene, const State<dim> &initial);
+  /// The stage of construction that begins.
+  template <int dim>
+  void
+  announce_stage(const Scene<dim> &scene, Console &console);
 
-    /// Announce the stage of construction that begins.
-    void
-    announce_stage(const Scene<dim> &scene);
+  /// The size of the first mesh, advice on the number of ranks, from a model of
+  /// their speed-up and memory, and a warning of contradictory prescribed
+  /// displacements. Collective.
+  template <int dim>
+  void
+  announce_first_mesh(const Discretization<dim> &discretization,
+                      Console                   &console);
 
-    /// Announce the first mesh and warn of what no mesh can cure; of each mesh,
-    /// name contact boundaries whose nodes are all held otherwise. Collective.
-    void
-    announce(const Discretization<dim> &discretization);
-
-    /// Announce that the mesh was too coarse for step @p n, by a factor of @p
-    /// excess, and has been refined.
-    void
-    announce_refinement(const unsigned int             n,
-                        const double                   excess,
-                        const types::global_cell_index n_cells);
-
-    /// Announce the linear solver once; @p name is empty before its first use.
-    void
-    announce_solver(const std::string &name)
-    {
-      if (name.empty() || name == solver)
-        return;
-      solver = name;
-      console.stream() << "Linear solver: " << solver << std::endl;
-    }
-
-  private:
-    /// Advise on the number of ranks, from a model of their speed-up and
-    /// memory. Collective.
-    void
-    advise_on_ranks(const Discretization<dim> &discretization);
-
-    /// Warn of contradictory prescribed displacements. Collective.
-    void
-    warn_of_jumps(const AdmissibleSpace<dim> &space);
-
-    void
-    warn_of_held_faces(const Discretization<dim> &discretization);
-
-    Console                     &console;
-    std::string                  solver;
-    bool                         has_announced_mesh = false;
-    std::set<types::boundary_id> held_faces;
-  };
+  /// Name contact boundaries of whose nodes other conditions hold all.
+  /// Collective.
+  template <int dim>
+  void
+  warn_of_held_faces(const Discretization<dim> &discretization,
+                     Console                   &console);
 } // namespace Viscoplastic

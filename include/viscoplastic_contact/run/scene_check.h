@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
-#include <viscoplastic_contact/error/mesh_controller.h>
-#include <viscoplastic_contact/run/announcer.h>
+#include <viscoplastic_contact/base/console.h>
 #include <viscoplastic_contact/time_stepping/time_stepper.h>
 
 namespace Viscoplastic
@@ -11,14 +10,14 @@ namespace Viscoplastic
   // throw ExcMessage with a sentence for the user.
 
   /// Make the first mesh, check the scene against it, and let steps of
-  /// controlled size end at kinks and jumps of the data. @p announcer is null
-  /// if nothing is to be printed.
+  /// controlled size end at kinks and jumps of the data. @p console is null if
+  /// nothing is to be printed.
   template <int dim>
   void
   make_first_mesh(Scene<dim>                                &scene,
                   parallel::distributed::Triangulation<dim> &triangulation,
                   StepControl                               &control,
-                  Announcer<dim>                            *announcer);
+                  Console                                   *console);
 
   /// Throw unless a discretization exists in all stages of construction.
   template <int dim>
@@ -27,16 +26,13 @@ namespace Viscoplastic
                DoFHandler<dim>          &dof_handler,
                Scene<dim>               &scene);
 
-  /// Give @p accepted the initial data, (3.20), in equilibrium if the scene
-  /// asks for that. Returns false, with cells marked, if the mesh of a run to a
-  /// tolerance is too coarse for them. @p error_estimator may be null.
+  /// Refuse initial data that violate (2.12); otherwise set their contact
+  /// multipliers.
   template <int dim>
-  bool
-  resolve_initial_data(const Discretization<dim> &discretization,
-                       const ErrorEstimator<dim> *error_estimator,
-                       MeshController<dim>       &mesh_controller,
-                       TimeStepper<dim>          &time_stepper,
-                       EvaluatedState<dim>       &accepted);
+  void
+  check_compatibility(const Discretization<dim> &discretization,
+                      State<dim>                &initial,
+                      const Load<dim>           &load);
 
   /// Refuse a first step beyond the stability limit before any file is written,
   /// and warn of later ones. Sets the rate of @p initial.

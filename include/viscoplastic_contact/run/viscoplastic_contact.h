@@ -5,7 +5,6 @@
 
 #include <viscoplastic_contact/error/known_solution.h>
 #include <viscoplastic_contact/error/mesh_controller.h>
-#include <viscoplastic_contact/run/announcer.h>
 #include <viscoplastic_contact/run/run_files.h>
 
 namespace Viscoplastic
@@ -25,15 +24,8 @@ namespace Viscoplastic
   {
   public:
     using Mesh = parallel::distributed::Triangulation<dim>;
-    /// Tells budget and step control what they have to know before the first
-    /// step, and refines the first mesh if it has to be. Returns a remark.
-    using PilotRun =
-      std::function<std::string(ErrorBudget &, StepControl &, Mesh &)>;
 
-    /// @p pilot_run: for runs to a tolerance that do not follow() another pass.
-    ViscoplasticContact(const Parameters &parameters,
-                        Console          &console,
-                        const PilotRun   &pilot_run);
+    ViscoplasticContact(const Parameters &parameters, Console &console);
 
     /// Simulate from the start or from a checkpoint. Returns a sentence if a
     /// signal has ended the run early, after a checkpoint. If another pass is
@@ -66,6 +58,11 @@ namespace Viscoplastic
     /// Set the initial data, (3.20), on a mesh that resolves them.
     void
     set_initial_state(bool mesh_changes = false);
+    /// Set the initial data, in equilibrium if the scene asks for that. Returns
+    /// false, with cells marked, if the mesh of a run to a tolerance is too
+    /// coarse for them.
+    bool
+    resolve_initial_data();
     /// Record and write the initial state, once: before the first step, or
     /// after it if the first step may refine the mesh and start anew.
     void
@@ -75,14 +72,23 @@ namespace Viscoplastic
     make_steps();
     AcceptedStep<dim>
     next_step();
+    /// Print the linear solver once it is known.
+    void
+    announce_solver();
     /// Refine the mesh if it is too coarse for a step; whether to repeat that.
     bool
     refine_for(const AcceptedStep<dim> &step);
-    /// Change the mesh according to its marked cells.
+    /// Carry the accepted state to the mesh for which cells have been marked,
+    /// or to the next stage of construction, and restore equilibrium with
+    /// sticking friction; the next step lets it slip.
     void
     change_mesh();
     void
     enter_next_stage();
+    /// Reset the rate and update the errors of a state that has been carried,
+    /// see ErrorEstimator::change_mesh().
+    void
+    complete_transfer(const double loss, const double history);
     bool
     is_finished() const
     {
@@ -97,7 +103,6 @@ namespace Viscoplastic
 
     // Control of passes, meshes and steps; pointers are null if not wanted.
     PassState                            pass;
-    const PilotRun                       pilot_run;
     std::unique_ptr<ErrorBudget>         budget;
     StepControl                          control;
     MeshController<dim>                  mesh_controller;
@@ -110,11 +115,11 @@ namespace Viscoplastic
 
     // Messages, wall time by phase, records, and files unless run without.
     Console                     &console;
-    Announcer<dim>               announcer;
     TimerOutput                  timer;
     KnownSolution<dim>           known_solution;
     Recorder<dim>                recorder;
     RunState<dim>                run_state;
     std::optional<RunFiles<dim>> files;
+    std::string                  solver_name; // that has been printed
   };
 } // namespace Viscoplastic

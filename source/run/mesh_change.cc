@@ -3,7 +3,8 @@
 #include <viscoplastic_contact/error/memory_loss.h>
 #include <viscoplastic_contact/error/state_transfer.h>
 #include <viscoplastic_contact/results/step_quantities.h>
-#include <viscoplastic_contact/run/state_carrier.h>
+#include <viscoplastic_contact/run/announcer.h>
+#include <viscoplastic_contact/run/viscoplastic_contact.h>
 
 namespace Viscoplastic
 {
@@ -33,24 +34,6 @@ namespace Viscoplastic
       std::optional<State<dim>> result(state);
       laws.thermal->add_stress(state.t, -1., result->z);
       return result;
-    }
-
-
-
-    /// Reset the rate and update the errors of a transferred state. @p loss and
-    /// @p history: see ErrorEstimator::change_mesh().
-    template <int dim>
-    void
-    complete(const ErrorEstimator<dim> *error_estimator,
-             const Discretization<dim> &discretization,
-             const double               loss,
-             const double               history,
-             EvaluatedState<dim>       &accepted)
-    {
-      accepted.rate.reset();
-      if (error_estimator != nullptr)
-        error_estimator->change_mesh(
-          discretization.space, discretization.matrix, loss, history, accepted);
     }
 
 
@@ -85,15 +68,10 @@ namespace Viscoplastic
 
 
   template <int dim>
-  EnergyChange
-  carry_to_marked_mesh(
-    const ErrorEstimator<dim>                  *error_estimator,
-    const std::unique_ptr<Discretization<dim>> &discretization,
-    const std::unique_ptr<TimeStepper<dim>>    &time_stepper,
-    parallel::distributed::Triangulation<dim>  &triangulation,
-    const std::function<void()>                &set_up,
-    EvaluatedState<dim>                        &accepted)
+  void
+  ViscoplasticContact<dim>::change_mesh()
   {
+    TimerOutput::Scope   phase(timer, "adaptation");
     const EnergiesOnMesh energies = energies_on_mesh(*discretization, accepted);
     const DistributedVector density =
       contact_density(*discretization, accepted.state);
@@ -102,7 +80,7 @@ namespace Viscoplastic
     const State<dim> &carried =
       without_temperature ? *without_temperature : accepted.state;
     const double loss =
-      error_estimator != nullptr ?
+      error_estimator ?
         memory_loss(triangulation, discretization->stress_space, carried.z) :
         0.;
     StateTransfer<dim> transfer(triangulation,
@@ -112,10 +90,9 @@ namespace Viscoplastic
     triangulation.execute_coarsening_and_refinement();
     set_up();
 
-    const Scene<dim> &scene  = discretization->scene();
-    State<dim>       &state  = accepted.state;
-    auto              result = transfer.unpack(discretization->stress_space);
-    state                    = std::move(result.state);
+    State<dim> &state  = accepted.state;
+    auto        result = transfer.unpack(discretization->stress_space);
+    state              = std::move(result.state);
     if (without_temperature)
       for (IrreversibleStress *stress : {&state.z, &result.stress})
         discretization->laws.thermal->add_stress(state.t, 1., *stress);
@@ -135,7 +112,7 @@ namespace Viscoplastic
     if (is_settled)
       time_stepper->settle(accepted);
     constexpr unsigned int max_rounds = 8;
-    const double           error      = error_estimator != nullptr ?
+    const double           error      = error_estimator ?
                                           accepted.errors.space :
                                           std::numeric_limits<double>::infinity();
     for (unsigned int round = 0; scene.has_viscosity() && round < max_rounds;
@@ -154,37 +131,31 @@ namespace Viscoplastic
     // What restoring equilibrium changes is part of the initial displacement.
     if (keeps_displacement)
       state.initial_u += state.u;
-    complete(error_estimator,
-             *discretization,
-             loss,
-             result.of_refined_cells,
-             accepted);
-    return {energies, energies_on_mesh(*discretization, accepted)};
+    complete_transfer(loss, result.of_refined_cells);
+    recorder.record_change(energies,
+                           energies_on_mesh(*discretization, accepted),
+                           &EnergyBalance::adaptation_energy);
   }
 
 
 
   template <int dim>
-  EnergyChange
-  carry_to_stage(const ErrorEstimator<dim>                  *error_estimator,
-                 const std::unique_ptr<Discretization<dim>> &discretization,
-                 const std::unique_ptr<TimeStepper<dim>>    &time_stepper,
-                 const std::function<void()>                &set_up,
-                 EvaluatedState<dim>                        &accepted)
+  void
+  ViscoplasticContact<dim>::enter_next_stage()
   {
-    const Scene<dim> &scene    = discretization->scene();
-    EnergiesOnMesh    energies = energies_on_mesh(*discretization, accepted);
-    DistributedVector density =
+    TimerOutput::Scope phase(timer, "adaptation");
+    EnergiesOnMesh     energies = energies_on_mesh(*discretization, accepted);
+    DistributedVector  density =
       contact_density(*discretization, accepted.state);
     std::vector<bool>            was_present; // by cell
     std::set<types::material_id> were_absent;
     for (const auto &cell : discretization->space.cells)
       was_present.push_back(scene.is_present(cell->material_id()));
     // Ghost cells are included, since they share nodes with owned ones.
-    for (const auto &cell :
-         discretization->space.dof_handler.active_cell_iterators())
+    for (const auto &cell : dof_handler.active_cell_iterators())
       if (!cell->is_artificial() && !scene.is_present(cell->material_id()))
         were_absent.insert(cell->material_id());
+    scene.enter_stage(scene.stage() + 1);
     set_up();
 
     const AdmissibleSpace<dim> &space = discretization->space;
@@ -204,17 +175,33 @@ namespace Viscoplastic
         state.contact = contact_on_new_mesh(*discretization, state, density);
         hold_new_points(*discretization, were_absent, state.contact);
       }
-    enter_stage(discretization->stress_space, was_present, state);
+    Viscoplastic::enter_stage(discretization->stress_space, was_present, state);
     time_stepper->settle(accepted);
-    complete(error_estimator, *discretization, 0., 0., accepted);
+    complete_transfer(0., 0.);
     time_stepper->estimate(accepted);
     // Only loads that remain do work; those on removed parts do not.
     energies.of_loads = old_u * accepted.forces.load.values;
-    return {energies, energies_on_mesh(*discretization, accepted)};
+    recorder.record_change(energies,
+                           energies_on_mesh(*discretization, accepted),
+                           &EnergyBalance::construction_energy);
+    announce_stage(scene, console);
   }
 
 
 
-  VISCOPLASTIC_INSTANTIATE(carry_to_marked_mesh);
-  VISCOPLASTIC_INSTANTIATE(carry_to_stage);
+  template <int dim>
+  void
+  ViscoplasticContact<dim>::complete_transfer(const double loss,
+                                              const double history)
+  {
+    accepted.rate.reset();
+    if (error_estimator)
+      error_estimator->change_mesh(
+        discretization->space, discretization->matrix, loss, history, accepted);
+  }
+
+
+
+  VISCOPLASTIC_INSTANTIATE_MEMBER(ViscoplasticContact, change_mesh);
+  VISCOPLASTIC_INSTANTIATE_MEMBER(ViscoplasticContact, enter_next_stage);
 } // namespace Viscoplastic

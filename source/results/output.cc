@@ -9,7 +9,6 @@
 #include <viscoplastic_contact/results/output.h>
 
 #include <chrono>
-#include <system_error>
 
 namespace Viscoplastic
 {
@@ -22,8 +21,7 @@ namespace Viscoplastic
     fail_together(communicator, [&]() {
       if (Utilities::MPI::this_mpi_process(communicator) != 0)
         return;
-      make_results_directory(path);
-      refuse_foreign_files(path, scene.output_lines.size());
+      refuse_foreign_files();
       write_record<dim>(scene,
                         path,
                         Utilities::MPI::n_mpi_processes(communicator),
@@ -45,7 +43,6 @@ namespace Viscoplastic
                    Utilities::MPI::n_mpi_processes(communicator),
                    &end);
       remove_unlisted_files();
-      remove_other_lines(path, scene.output_lines.size());
     });
   }
 
@@ -97,18 +94,15 @@ namespace Viscoplastic
   {
     auto to_write = std::exchange(files, {});
     if (Utilities::MPI::n_mpi_processes(communicator) == 1)
-      try
-        {
-          writing = std::async(std::launch::async, [to_write]() mutable {
-            for (auto &write : to_write)
-              std::exchange(write, nullptr)(); // frees the data, too
-          });
-          return;
-        }
-      catch (const std::system_error &)
-        {
-          // Threads are not available: write here.
-        }
+      {
+        // Where no thread is to be had, finish() writes.
+        writing = std::async(std::launch::async | std::launch::deferred,
+                             [to_write]() mutable {
+                               for (auto &write : to_write) // frees the data
+                                 std::exchange(write, nullptr)();
+                             });
+        return;
+      }
     // One at a time, since ranks write some of the files together.
     for (const auto &write : to_write)
       fail_together(communicator, write);
@@ -219,10 +213,8 @@ namespace Viscoplastic
         const bool  is_present = scene.is_present(cell->material_id());
         for (const unsigned int v : cell->vertex_indices())
           {
-            const std::size_t node =
-              space.relevant.index_within_set(cell->vertex_dof_index(v, 0)) /
-              dim;
-            grid.points[node] = cell->vertex(v);
+            const unsigned int node = stress_space.nodes_of_cell(c)[v] / dim;
+            grid.points[node]       = cell->vertex(v);
             if (is_present)
               grid.vertices.push_back(node);
           }
@@ -304,7 +296,7 @@ namespace Viscoplastic
             continue;
           const auto     id       = cell_face->boundary_id();
           Tensor<1, dim> normal   = boundary.condition_at(id).normal;
-          const bool     is_other = boundary.is_other_side(id);
+          const bool     is_other = scene.is_other_side(id);
           if (is_other)
             normal *= -1.;
           if (name == "opposite" ?
@@ -317,8 +309,7 @@ namespace Viscoplastic
                 GeometryInfo<dim>::face_to_cell_vertices(f, i);
               grid.add_vertex(space.cells[c]->vertex(v));
               const double *u =
-                reported.begin() + space.relevant.index_within_set(
-                                     space.cells[c]->vertex_dof_index(v, 0));
+                reported.begin() + stress_space.nodes_of_cell(c)[v];
               std::vector<double> values = boundary.values(c, f, v, normal);
               values.insert(values.begin(), u, u + dim);
               const double *value = values.data();

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include "output_grid.h"
 #include <viscoplastic_contact/base/files.h>
+#include <viscoplastic_contact/base/messages.h>
+#include <viscoplastic_contact/results/line_output.h>
 #include <viscoplastic_contact/results/output.h>
 
 #include <filesystem>
@@ -45,7 +47,49 @@ namespace Viscoplastic
                 ".xml\" xpointer=\"element(/1)\"/>\n";
       return text + "</Grid>\n</Domain>\n</Xdmf>\n";
     }
+
+
+
+    constexpr const char *beginning_of_lines = "step,t,s,x,y,";
+
+
+
+    /// Whether a file begins like a file of this program.
+    bool
+    is_own(const std::string &name, const std::string &beginning)
+    {
+      std::ifstream file(name, std::ios::binary);
+      std::string   text(200, ' ');
+      file.read(text.data(), static_cast<std::streamsize>(text.size()));
+      text.resize(file.gcount());
+      // Names of columns may be followed by unit labels.
+      static const std::regex label(" \\[[^\\]\n]*\\]?");
+      text = std::regex_replace(text, label, "").substr(0, beginning.size());
+      // The file may be truncated.
+      return file.is_open() && beginning.compare(0, text.size(), text) == 0;
+    }
   } // namespace
+
+
+
+  template <int dim>
+  void
+  Output<dim>::refuse_foreign_files() const
+  {
+    std::vector<std::pair<std::string, std::string>> own{
+      {"parameters.prm", "# Listing of Parameters\n"},
+      {"run.json", "{\n  \"program\": \"viscoplastic_contact\""},
+      {"statistics.csv", "step,t,k,"}};
+    for (std::size_t i = 0; i < scene.output_lines.size(); ++i)
+      own.emplace_back(line_file_name(i), beginning_of_lines);
+    for (const auto &[name, beginning] : own)
+      if (std::error_code none;
+          std::filesystem::is_regular_file(path + name, none) &&
+          !is_own(path + name, beginning))
+        refuse("The results would overwrite '" + path + name +
+               "', which this program has not written; choose another "
+               "'Output/Directory'.");
+  }
 
 
 
@@ -125,7 +169,7 @@ namespace Viscoplastic
     };
     for (const std::string &name : series())
       {
-        listed.insert(fs::path(list(name).first).filename().string());
+        listed.insert(name + (is_in_hdf5(name) ? ".xdmf" : ".pvd"));
         for (unsigned int n = 0; n < times.size(); ++n)
           add(record_name(name, n) + (is_in_hdf5(name) ? ".xml" : ".pvtu"));
       }
@@ -146,16 +190,28 @@ namespace Viscoplastic
           others.push_back(file);
           with_others.insert(parts[1]);
         }
-    for (const std::string &name : with_others)
-      for (const char *ending : {".pvd", ".xdmf"})
-        if (listed.count(name + ending) == 0)
-          others.push_back(name + ending);
+    for (const std::string record : {"contact.pvd",
+                                     "opposite.pvd",
+                                     "revolved.pvd",
+                                     "solution.pvd",
+                                     "solution.xdmf"})
+      if (listed.count(record) == 0 &&
+          with_others.count(record.substr(0, record.find('.'))) == 1)
+        others.push_back(record);
     for (const std::string &file : others)
       fs::remove(path + file, none);
+
+    // Lines of an earlier run that has had more of them.
+    for (std::size_t i = scene.output_lines.size();; ++i)
+      if (const std::string name = path + line_file_name(i);
+          !fs::is_regular_file(name, none) ||
+          !is_own(name, beginning_of_lines) || !fs::remove(name, none))
+        break;
   }
 
 
 
+  VISCOPLASTIC_INSTANTIATE_MEMBER(Output, refuse_foreign_files);
   VISCOPLASTIC_INSTANTIATE_MEMBER(Output, series);
   VISCOPLASTIC_INSTANTIATE_MEMBER(Output, is_in_hdf5);
   VISCOPLASTIC_INSTANTIATE_MEMBER(Output, list);

@@ -3,14 +3,12 @@
 #include <viscoplastic_contact/base/messages.h>
 #include <viscoplastic_contact/base/table.h>
 #include <viscoplastic_contact/base/version.h>
-#include <viscoplastic_contact/results/line_output.h>
 #include <viscoplastic_contact/results/run_record.h>
 
 #include <nlohmann/json.hpp>
 
 #include <ctime>
 #include <filesystem>
-#include <regex>
 #include <sstream>
 
 namespace Viscoplastic
@@ -78,65 +76,7 @@ namespace Viscoplastic
           return line.substr(colon + 2);
       return "unknown";
     }
-
-
-
-    constexpr const char *beginning_of_lines = "step,t,s,x,y,";
-
-
-
-    /// Whether a file begins like a file of this program.
-    bool
-    is_own(const std::string &name, const std::string &beginning)
-    {
-      std::ifstream file(name, std::ios::binary);
-      std::string   text(200, ' ');
-      file.read(text.data(), static_cast<std::streamsize>(text.size()));
-      text.resize(file.gcount());
-      // Names of columns may be followed by unit labels.
-      static const std::regex label(" \\[[^\\]\n]*\\]?");
-      text = std::regex_replace(text, label, "").substr(0, beginning.size());
-      // The file may be truncated.
-      return file.is_open() && beginning.compare(0, text.size(), text) == 0;
-    }
   } // namespace
-
-
-
-  void
-  refuse_foreign_files(const std::string &path, const std::size_t n_lines)
-  {
-    std::vector<std::pair<std::string, std::string>> own{
-      {"parameters.prm", "# Listing of Parameters\n"},
-      {"run.json", "{\n  \"program\": \"viscoplastic_contact\""},
-      {"statistics.csv", "step,t,k,"}};
-    for (std::size_t i = 0; i < n_lines; ++i)
-      own.emplace_back(line_file_name(i), beginning_of_lines);
-    for (const auto &[name, beginning] : own)
-      {
-        std::error_code none;
-        if (!std::filesystem::is_regular_file(path + name, none))
-          continue;
-        if (!is_own(path + name, beginning))
-          refuse("The results would overwrite '" + path + name +
-                 "', which this program has not written; choose another "
-                 "'Output/Directory'.");
-      }
-  }
-
-
-
-  void
-  remove_other_lines(const std::string &path, std::size_t n_lines)
-  {
-    std::error_code none;
-    for (std::string name; name = path + line_file_name(n_lines),
-                           std::filesystem::is_regular_file(name, none) &&
-                             is_own(name, beginning_of_lines) &&
-                             std::filesystem::remove(name, none);
-         ++n_lines)
-      {}
-  }
 
 
 

@@ -28,9 +28,8 @@ namespace Viscoplastic
   class Output
   {
   public:
-    /// Makes the directory and writes the record of the run. Collective. Throws
-    /// ExcMessage if the directory cannot be written or has other files with
-    /// the names of results.
+    /// Writes the record of the run. Collective. Throws ExcMessage if the
+    /// directory, which exists, has other files with the names of results.
     Output(const Scene<dim> &scene, const MPI_Comm communicator);
 
     /// Continue after the outputs at the times @p earlier, which are all that
@@ -120,8 +119,12 @@ namespace Viscoplastic
     is_in_hdf5(const std::string &name) const;
     std::vector<std::string>
     series() const;
+    /// Throw ExcMessage if results would overwrite files that another program
+    /// has written. On one rank.
+    void
+    refuse_foreign_files() const;
     /// Remove files of fields, of earlier runs or of times after the last
-    /// output, that no list names. On one rank.
+    /// output, that no list names, and those of more lines. On one rank.
     void
     remove_unlisted_files() const;
 

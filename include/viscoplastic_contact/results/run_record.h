@@ -18,16 +18,6 @@ namespace Viscoplastic
   void
   make_results_directory(const std::string &path);
 
-  /// Throws ExcMessage if results in directory @p path, with @p n_lines files
-  /// of lines, would overwrite files that another program has written.
-  void
-  refuse_foreign_files(const std::string &path, const std::size_t n_lines);
-
-  /// Remove files of lines beyond the first @p n_lines, which an earlier run
-  /// has written.
-  void
-  remove_other_lines(const std::string &path, std::size_t n_lines);
-
   /// What run.json has of the end of a run: results, and costs for studies.
   template <int dim>
   struct RunEnd

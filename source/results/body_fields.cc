@@ -2,8 +2,6 @@
 #include <viscoplastic_contact/discretization/initial_state.h>
 #include <viscoplastic_contact/results/body_fields.h>
 
-#include <map>
-
 namespace Viscoplastic
 {
   namespace
@@ -134,20 +132,15 @@ namespace Viscoplastic
                        const VertexWeights<dim> &weights,
                        double                   *values) const
   {
-    const AdmissibleSpace<dim> &space = stress_space.space;
-    double                      sum   = 0.;
+    const unsigned int *nodes = stress_space.nodes_of_cell(cell);
+    double              sum   = 0.;
     for (const double weight : weights)
       sum += weight;
     for (const DistributedVector *field : nodal_fields)
       {
-        for (const unsigned int v : space.cells[cell]->vertex_indices())
-          {
-            const double *at_vertex =
-              field->begin() + space.relevant.index_within_set(
-                                 space.cells[cell]->vertex_dof_index(v, 0));
-            for (unsigned int d = 0; d < dim; ++d)
-              values[d] += weights[v] * at_vertex[d];
-          }
+        for (unsigned int v = 0; v < weights.size(); ++v)
+          for (unsigned int d = 0; d < dim; ++d)
+            values[d] += weights[v] * field->begin()[nodes[v] + d];
         values += dim;
       }
     for (const double mean : means(cell))

@@ -55,20 +55,6 @@ namespace Viscoplastic
       locate_points(mesh, points, [&scene](const types::material_id id) {
         return scene.is_present(id);
       }).points;
-    if (scene.has_stages())
-      {
-        std::vector<unsigned int> is_absent(points.size(), 0);
-        for (std::size_t i = 0; i < points.size(); ++i)
-          if (in_body[i].is_mine())
-            is_absent[i] = !scene.is_present(
-              discretization.space.cells[in_body[i].cell]->material_id());
-        Utilities::MPI::sum(is_absent,
-                            discretization.space.communicator,
-                            is_absent);
-        for (std::size_t i = 0; i < points.size(); ++i)
-          if (is_absent[i] > 0)
-            absent_points.push_back(i);
-      }
     const auto of_boundary = columns_of<dim>(fields, true);
     if (of_boundary.empty())
       return;
@@ -92,14 +78,19 @@ namespace Viscoplastic
   {
     const AdmissibleSpace<dim> &space   = discretization.space;
     const std::size_t           n_names = all_columns.size();
-    std::vector<double>         result(in_body.size() * n_names, 0.);
+    const double        nothing = std::numeric_limits<double>::quiet_NaN();
+    std::vector<double> result(in_body.size() * n_names, 0.);
     {
       const BodyFields<dim> body(discretization.laws, state, fields);
       for (std::size_t i = 0; i < in_body.size(); ++i)
-        if (in_body[i].is_mine())
-          body.add(in_body[i].cell,
-                   shape_values(in_body[i].unit),
-                   &result[i * n_names]);
+        if (const CellPoint<dim> &place = in_body[i]; place.is_mine())
+          {
+            double *const values = &result[i * n_names];
+            if (space.scene.is_present(space.cells[place.cell]->material_id()))
+              body.add(place.cell, shape_values(place.unit), values);
+            else
+              std::fill(values, values + n_body, nothing);
+          }
     }
     if (!on_face.empty())
       {
@@ -108,27 +99,23 @@ namespace Viscoplastic
                                            discretization.face.get(),
                                            fields);
         for (std::size_t i = 0; i < on_face.size(); ++i)
-          if (const CellPoint<dim> &place = on_face[i]; place.is_mine())
-            {
-              const types::boundary_id id =
-                space.cells[place.cell]->face(place.face)->boundary_id();
-              boundary.add(place.cell,
-                           place.face,
-                           shape_values(place.unit),
-                           space.scene.boundary.at(id).normal,
-                           &result[i * n_names + n_body]);
-            }
+          {
+            const CellPoint<dim> &place  = on_face[i];
+            double *const         values = &result[i * n_names];
+            if (!is_on_face[i])
+              std::fill(values + n_body, values + n_names, nothing);
+            else if (place.is_mine())
+              boundary.add(
+                place.cell,
+                place.face,
+                shape_values(place.unit),
+                space.scene.boundary
+                  .at(space.cells[place.cell]->face(place.face)->boundary_id())
+                  .normal,
+                values + n_body);
+          }
       }
     Utilities::MPI::sum(result, space.communicator, result);
-    for (const std::size_t i : absent_points)
-      std::fill(&result[i * n_names],
-                &result[i * n_names] + n_body,
-                std::numeric_limits<double>::quiet_NaN());
-    for (std::size_t i = 0; i < on_face.size(); ++i)
-      if (!is_on_face[i])
-        std::fill(&result[i * n_names + n_body],
-                  &result[i * n_names] + n_names,
-                  std::numeric_limits<double>::quiet_NaN());
     return result;
   }
 

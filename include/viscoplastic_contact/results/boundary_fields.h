@@ -32,19 +32,13 @@ namespace Viscoplastic
     static std::set<RecordedField>
     of_output(const Scene<dim> &scene, const ContactFace<dim> *face);
 
-    /// Whether a boundary is the primary side of contact of two bodies.
-    bool
-    is_other_side(const types::boundary_id id) const
-    {
-      return secondary_of.count(id) == 1;
-    }
-
     /// The condition of the contact at a boundary on either of its sides.
     const BoundaryCondition<dim> &
     condition_at(const types::boundary_id id) const
     {
+      const auto secondary = secondary_of.find(id);
       return stress_space.space.scene.boundary.at(
-        is_other_side(id) ? secondary_of.at(id) : id);
+        secondary == secondary_of.end() ? id : secondary->second);
     }
 
     /// The values at a vertex of an owned cell, on a face with this outward

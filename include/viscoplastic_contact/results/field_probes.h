@@ -62,8 +62,6 @@ namespace Viscoplastic
     /// The points in cells of the body, and on faces of Gamma_3.
     std::vector<CellPoint<dim>> in_body, on_face;
     std::vector<bool>           is_on_face;
-    /// The points that are in cells of absent materials only.
-    std::vector<std::size_t> absent_points;
   };
 
 

@@ -112,7 +112,7 @@ namespace Viscoplastic
     const std::string on_this_mesh =
       "which with an error of the mesh of " + number(100. * error, 2) +
       " % in the energy norm a finer one may change.";
-    if (run.has_viscosity && !run.has_flowed)
+    if (scene.has_viscosity() && !run.has_flowed)
       {
         std::string text = "viscoplastic flow has never acted: no material has "
                            "flowed, and 'Law' = elastic gives the same for "
@@ -151,28 +151,24 @@ namespace Viscoplastic
             number(100. * run.errors->relative(), 3) + " %.";
         result.push_back(text);
       }
-    bool has_given_bound = false, has_computed_pressure = false,
-         has_normal_compliance = false;
-    for (const auto &pair : scene.boundary)
-      {
-        has_given_bound |= pair.second.is_unilateral() &&
-                           pair.second.has_friction() &&
-                           !pair.second.has_computed_pressure();
-        has_computed_pressure |= pair.second.has_computed_pressure();
-        has_normal_compliance |= pair.second.has_normal_compliance();
-      }
     if (scene.has_unilateral_contact() && !has_touched && closes_between_nodes)
       result.push_back("unilateral contact has never acted: the gap has closed "
                        "between the nodes, but not at them; the mesh is too "
                        "coarse for it ('Geometry/Boundary refinements').");
-    else if (scene.has_unilateral_contact() && !has_touched && !has_given_bound)
+    else if (scene.has_unilateral_contact() && !has_touched &&
+             !scene.on_any_boundary([](const auto &b) {
+               return b.is_unilateral() && b.has_friction() &&
+                      !b.has_computed_pressure();
+             }))
       result.push_back(
         "unilateral contact has never acted: nothing has touched "
         "the foundation, " +
         (is_rough ? on_this_mesh :
                     "and 'Role' = free gives the same for less."));
     else if (scene.has_unilateral_contact() && has_touched && !has_opened &&
-             !has_computed_pressure && !has_normal_compliance)
+             !scene.on_any_boundary([](const auto &b) {
+               return b.has_computed_pressure() || b.has_normal_compliance();
+             }))
       result.push_back("unilateral contact has never opened: everything has "
                        "touched the foundation at all times, and 'Contact law' "
                        "= bilateral with the gap as 'Foundation displacement' "

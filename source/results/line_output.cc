@@ -2,9 +2,6 @@
 #include <viscoplastic_contact/base/messages.h>
 #include <viscoplastic_contact/results/line_output.h>
 
-#include <iomanip>
-#include <sstream>
-
 namespace Viscoplastic
 {
   std::string
@@ -35,9 +32,10 @@ namespace Viscoplastic
     fail_together(communicator, [&] {
       if (Utilities::MPI::this_mpi_process(communicator) == 0)
         for (std::size_t i = 0; i < scene.output_lines.size(); ++i)
-          files.push_back(
-            std::make_unique<TableFile>(directory + line_file_name(i),
-                                        last_step));
+          files.emplace_back(directory + line_file_name(i),
+                             scene.parameters.units,
+                             dim,
+                             last_step);
     });
   }
 
@@ -52,43 +50,28 @@ namespace Viscoplastic
       return;
     if (probes.empty())
       for (const OutputLine<dim> &line : scene.output_lines)
-        probes.push_back(std::make_unique<FieldProbes<dim>>(*discretization,
-                                                            line.points(),
-                                                            fields));
+        probes.emplace_back(*discretization, line.points(), fields);
     for (std::size_t i = 0; i < probes.size(); ++i)
       {
-        const std::vector<double> values = probes[i]->values(state);
+        const std::vector<double> values = probes[i].values(state);
         fail_together(discretization->space.communicator, [&] {
           if (files.empty())
             return;
-          std::ostringstream              file;
-          const std::vector<FieldColumn> &columns = probes[i]->columns();
-          if (state.n == 0)
-            {
-              const Units      &units  = scene.parameters.units;
-              const std::string length = units.label(Quantity::length, dim);
-              file << "step,t" << units.label(Quantity::time, dim) << ",s"
-                   << length;
-              for (unsigned int d = 0; d < dim; ++d)
-                file << ',' << "xyz"[d] << length;
-              for (const FieldColumn &column : columns)
-                file << ',' << column.name << units.label(column.quantity, dim);
-              file << '\n';
-            }
-          file << std::setprecision(12);
           const OutputLine<dim>        &line   = scene.output_lines[i];
           const std::vector<Point<dim>> points = line.points();
           const double                 *value  = values.data();
           for (std::size_t p = 0; p < points.size(); ++p)
             {
-              file << state.n << ',' << state.t << ',' << line.distance(p);
+              TableRow row;
+              row.add("step", state.n);
+              row.add("t", state.t, Quantity::time);
+              row.add("s", line.distance(p), Quantity::length);
               for (unsigned int d = 0; d < dim; ++d)
-                file << ',' << points[p][d];
-              for (std::size_t c = 0; c < columns.size(); ++c)
-                file << ',' << *value++;
-              file << '\n';
+                row.add({"xyz"[d]}, points[p][d], Quantity::length);
+              for (const FieldColumn &column : probes[i].columns())
+                row.add(column.name, *value++, column.quantity);
+              files[i].write(row);
             }
-          files[i]->write(file.str());
         });
       }
   }
@@ -99,8 +82,8 @@ namespace Viscoplastic
   void
   LineOutput<dim>::synchronize()
   {
-    for (const auto &file : files)
-      file->synchronize();
+    for (const TableFile &file : files)
+      file.synchronize();
   }
 
 

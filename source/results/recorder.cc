@@ -109,13 +109,16 @@ namespace Viscoplastic
     judge(step, quantities);
     sum_up(step, quantities, errors);
     check_sizes(/* at_end = */ false);
-    const StatisticsRow recorded = row(step, quantities, errors);
+    const TableRow recorded = row(step, quantities, errors);
     run.at_end.clear();
-    for (const StatisticsRow::Entry &entry : recorded.entries)
+    for (const TableRow::Entry &entry : recorded.entries)
       if (entry.is_printed)
         run.at_end.push_back(entry);
     if (statistics)
-      statistics->write(recorded);
+      {
+        recorded.require_finite();
+        statistics->write(recorded);
+      }
     report_progress(step, quantities);
     stopped_clock.reset();
   }
@@ -165,11 +168,11 @@ namespace Viscoplastic
     run.slide.update(quantities.slide, t);
     run.missed_bounds += step.end.state.k * quantities.friction_bounds.missed;
     run.computed_bounds += step.end.state.k * quantities.friction_bounds.sum;
-    if (run.displacement.update(quantities.max_displacement, t))
-      run.displacement_position = quantities.displacement_position;
+    run.displacement.update(quantities.max_displacement,
+                            t,
+                            quantities.displacement_position);
     run.strain.update(stress.mean_strain, t);
-    if (run.von_mises.update(stress.max_von_mises, t))
-      run.von_mises_position = stress.von_mises_position;
+    run.von_mises.update(stress.max_von_mises, t, stress.von_mises_position);
     run.pressure.update(quantities.contact.max_pressure, t);
     run.first_touch.update(quantities.contact.contact_area > 0.,
                            step.time_step);
@@ -177,10 +180,8 @@ namespace Viscoplastic
     run.capped_volume.update(step.capped_volume, step.time_of_rate());
     run.largest_error.update(errors.error);
     run.largest_exact.update(errors.exact);
-    run.has_viscosity = scene.has_viscosity();
-    run.has_flowed    = balance.viscous_dissipation != 0.;
-    run.has_friction  = scene.has_friction();
-    if (run.has_friction)
+    run.has_flowed = balance.viscous_dissipation != 0.;
+    if (scene.has_friction())
       {
         // The area of all friction points depends on the mesh.
         if (friction.slip_area > run.slip_area.value ||
@@ -216,12 +217,10 @@ namespace Viscoplastic
               }
           }
       }
-    if (const double k_r = step.stiffness(); k_r > run.stiffness.value)
-      {
-        run.stiffness.update(k_r, t);
-        for (unsigned int d = 0; d < dim; ++d)
-          run.critical_position[d] = step.critical_position[d];
-      }
+    Point<dim> critical_position;
+    for (unsigned int d = 0; d < dim; ++d)
+      critical_position[d] = step.critical_position[d];
+    run.stiffness.update(step.stiffness(), t, critical_position);
     if (control.may_reject())
       run.steps = control.counts();
     if (scene.is_implicit_beyond_the_limit())
@@ -326,7 +325,7 @@ namespace Viscoplastic
   Recorder<dim>::print(std::ostream &out) const
   {
     out << '\n';
-    run.print(out, scene.parameters.units, scene.names);
+    run.print(out, scene);
     const double n = run.n_steps;
     out << std::setprecision(3) << "Iterations per step: ";
     if (newton_iterations > 0)

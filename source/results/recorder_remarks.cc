@@ -91,7 +91,7 @@ namespace Viscoplastic
                ", although displacements are small: a point alone carries "
                "force, as where a symmetry ends, and strains there grow as "
                "cells become smaller (the stress is largest at x = (" +
-               as_text(run.von_mises_position, 3) + ")).";
+               as_text(run.von_mises.position, 3) + ")).";
       return what + "; small strains are assumed, so that " +
              (is_far || run.strain.value > 1. ?
                 "this is flow without end or a load far too large, and "
@@ -353,7 +353,7 @@ namespace Viscoplastic
     // The defect is an error of the work of friction, see EnergyBalance.
     if (const double missing = balance.defect(),
         friction             = balance.friction_dissipation;
-        run.has_friction && !scene.has_stages() &&
+        scene.has_friction() && !scene.has_stages() &&
         std::abs(missing) > 0.05 * friction &&
         std::abs(missing) > 1e-3 * balance.scale())
       result.push_back(

@@ -13,17 +13,6 @@ namespace Viscoplastic
 {
   namespace
   {
-    void
-    print_row(std::ostream      &out,
-              const std::string &name,
-              const std::string &value)
-    {
-      // Names of places may be wider than the column.
-      out << "  " << std::left << std::setw(25) << name << std::right << ' '
-          << value << '\n';
-    }
-
-
     /// Return numbers with a unit, with an SI prefix chosen for large or small
     /// ones: 0.2 mm for 0.0002 m.
     std::string
@@ -57,264 +46,241 @@ namespace Viscoplastic
 
 
 
-    std::string
-    with_unit_of_time(const double t, const Units &units)
-    {
-      return number(t) + units.suffix(Quantity::time);
-    }
-
-
-
-    /// Print the quantities at the end of the run.
+    /// Prints the parts of a summary.
     template <int dim>
-    void
-    print_end(std::ostream          &out,
-              const Units           &units,
-              const PlaceNames      &names,
-              const RunSummary<dim> &run)
+    struct SummaryPrinter
     {
-      out << "At t = " << with_unit_of_time(run.t, units) << ":\n";
-      // Forces below this part of the largest are solver errors and print as 0.
-      constexpr double noise         = 1e-5;
-      double           largest_force = 0.;
-      for (const StatisticsRow::Entry &entry : run.at_end)
-        if (entry.quantity == Quantity::force)
-          for (const double force : entry.values)
-            largest_force = std::max(largest_force, std::abs(force));
-      for (const StatisticsRow::Entry &entry : run.at_end)
-        {
-          // The mesh may have changed in earlier passes only.
-          if (entry.name == "adaptation_energy" && entry.values[0] == 0.)
-            continue;
-          std::vector<double> values = entry.values;
-          for (double &value : values)
-            if (entry.quantity == Quantity::force &&
-                std::abs(value) < noise * largest_force)
-              value = 0.;
-          print_row(out,
-                    names.words(entry.name),
-                    with_unit(values, units.name(entry.quantity, dim)));
-        }
-      if (run.error_estimate)
-        print_row(out, "error estimate", number(*run.error_estimate));
-    }
+      std::ostream          &out;
+      const Scene<dim>      &scene;
+      const RunSummary<dim> &run;
 
+      void
+      row(const std::string &name, const std::string &value) const
+      {
+        // Names of places may be wider than the column.
+        out << "  " << std::left << std::setw(25) << name << std::right << ' '
+            << value << '\n';
+      }
 
+      std::string
+      time(const double t) const
+      {
+        return number(t) + scene.unit(Quantity::time);
+      }
 
-    /// Print the largest values of the run.
-    template <int dim>
-    void
-    print_largest(std::ostream          &out,
-                  const Units           &units,
-                  const RunSummary<dim> &run)
-    {
-      const auto at_time = [&](const Largest &largest,
-                               const Quantity quantity) {
-        return with_unit({largest.value}, units.name(quantity, dim)) +
-               " at t = " + with_unit_of_time(largest.t, units);
-      };
-      const auto with_place = [&](const Largest    &largest,
-                                  const Quantity    quantity,
-                                  const Point<dim> &position) {
-        return at_time(largest, quantity) + ", x = (" + as_text(position, 3) +
-               ")" + units.suffix(Quantity::length, dim);
-      };
-      out << "Largest in the run:\n";
-      print_row(out,
-                "displacement",
-                with_place(run.displacement,
-                           Quantity::length,
-                           run.displacement_position));
-      print_row(out,
-                "von Mises stress",
-                with_place(run.von_mises,
-                           Quantity::stress,
-                           run.von_mises_position));
-      if (run.pressure.value > 0.)
-        print_row(out,
-                  "contact pressure",
-                  at_time(run.pressure, Quantity::stress));
-      if (run.has_friction)
-        print_row(out,
-                  "slipping area",
-                  number(run.slip_area.value) + " of " +
-                    number(run.friction_area) +
-                    units.suffix(Quantity::area, dim) +
-                    " at t = " + with_unit_of_time(run.slip_area.t, units) +
-                    (run.slip_area.value > 0. && run.slip_area.t == 0. ?
-                       ", into the initial equilibrium" :
-                       ""));
-      if (run.slip_rate.value > 0.)
-        print_row(out, "slip rate", at_time(run.slip_rate, Quantity::velocity));
-      if (run.capped_volume.value > 0.)
-        print_row(out,
-                  "volume beyond the cap",
-                  at_time(run.capped_volume, Quantity::volume));
-      if (run.stiffness.value > 0.)
-        print_row(out,
-                  "time step times r",
-                  with_place(run.stiffness,
-                             Quantity::pure_number,
-                             run.critical_position));
-    }
+      /// Print the quantities at the end of the run.
+      void
+      end() const
+      {
+        out << "At t = " << time(run.t) << ":\n";
+        // Forces below this part of the largest are solver errors and print as
+        // 0.
+        constexpr double noise         = 1e-5;
+        double           largest_force = 0.;
+        for (const TableRow::Entry &entry : run.at_end)
+          if (entry.quantity == Quantity::force)
+            for (const double force : entry.values)
+              largest_force = std::max(largest_force, std::abs(force));
+        for (const TableRow::Entry &entry : run.at_end)
+          {
+            // The mesh may have changed in earlier passes only.
+            if (entry.name == "adaptation_energy" && entry.values[0] == 0.)
+              continue;
+            std::vector<double> values = entry.values;
+            for (double &value : values)
+              if (entry.quantity == Quantity::force &&
+                  std::abs(value) < noise * largest_force)
+                value = 0.;
+            row(scene.names.words(entry.name),
+                with_unit(values,
+                          scene.parameters.units.name(entry.quantity, dim)));
+          }
+        if (run.error_estimate)
+          row("error estimate", number(*run.error_estimate));
+      }
 
+      /// Print a largest value unless it is zero.
+      void
+      largest(const std::string  &name,
+              const Quantity      quantity,
+              const Largest<dim> &largest) const
+      {
+        if (largest.value > 0.)
+          row(name, with_time(quantity, largest));
+      }
 
+      std::string
+      with_time(const Quantity quantity, const Largest<dim> &largest) const
+      {
+        return with_unit({largest.value},
+                         scene.parameters.units.name(quantity, dim)) +
+               " at t = " + time(largest.t);
+      }
 
-    /// Print the first touch and slip, unless they are in the first step.
-    template <int dim>
-    void
-    print_first(std::ostream          &out,
-                const Units           &units,
-                const RunSummary<dim> &run)
-    {
-      const auto print = [&](const std::string &what, const FirstStep &first) {
+      std::string
+      with_place(const Quantity quantity, const Largest<dim> &largest) const
+      {
+        return with_time(quantity, largest) + ", x = (" +
+               as_text(largest.position, 3) + ")" +
+               scene.unit(Quantity::length);
+      }
+
+      /// Print the largest values of the run.
+      void
+      largest_values() const
+      {
+        out << "Largest in the run:\n";
+        row("displacement", with_place(Quantity::length, run.displacement));
+        row("von Mises stress", with_place(Quantity::stress, run.von_mises));
+        largest("contact pressure", Quantity::stress, run.pressure);
+        if (scene.has_friction())
+          row("slipping area",
+              number(run.slip_area.value) + " of " + number(run.friction_area) +
+                scene.unit(Quantity::area) +
+                " at t = " + time(run.slip_area.t) +
+                (run.slip_area.value > 0. && run.slip_area.t == 0. ?
+                   ", into the initial equilibrium" :
+                   ""));
+        largest("slip rate", Quantity::velocity, run.slip_rate);
+        largest("volume beyond the cap", Quantity::volume, run.capped_volume);
+        if (run.stiffness.value > 0.)
+          row("time step times r",
+              with_place(Quantity::pure_number, run.stiffness));
+      }
+
+      /// Print the first touch or slip, unless it is in the first step.
+      void
+      first(const std::string &what, const FirstStep &first) const
+      {
         if (first.n > 1)
           out << "First " << what << " between t = " << number(first.before)
-              << " and " << with_unit_of_time(first.t, units) << '\n';
-      };
-      print("touch", run.first_touch);
-      print("slip", run.first_slip);
-    }
+              << " and " << time(first.t) << '\n';
+      }
 
+      /// Print how step control and the stability limit affected the steps.
+      void
+      steps() const
+      {
+        if (run.unchanged_steps > 0)
+          out << "Steps in which nothing changed, without a solve: "
+              << run.unchanged_steps << " of " << run.n_steps << '\n';
+        if (run.steps)
+          {
+            out << "Steps: " << run.n_steps << " accepted";
+            for (const auto &[n, what] :
+                 {std::make_pair(run.steps->rejected,
+                                 "rejected for their error"),
+                  std::make_pair(run.steps->events,
+                                 "rejected to resolve events of slip"),
+                  std::make_pair(run.steps->failed, "that failed")})
+              if (n > 0)
+                out << ", " << n << ' ' << what;
+            out << '\n';
+            if (run.steps->unresolved > 0)
+              out << "Note: " << run.steps->unresolved
+                  << " steps of the smallest size have larger errors than "
+                     "their tolerance allows: where the data jump, or because "
+                     "'Smallest step' is too large.\n";
+          }
+        if (run.implicit_steps)
+          out << "Steps by backward Euler, beyond the limit 2/r: "
+              << *run.implicit_steps << " of " << run.n_steps << '\n';
+      }
 
-
-    /// Print how step control and the stability limit affected the steps.
-    template <int dim>
-    void
-    print_steps(std::ostream &out, const RunSummary<dim> &run)
-    {
-      if (run.unchanged_steps > 0)
-        out << "Steps in which nothing changed, without a solve: "
-            << run.unchanged_steps << " of " << run.n_steps << '\n';
-      if (run.steps)
-        {
-          std::string text = std::to_string(run.n_steps) + " accepted";
-          const auto  add = [&](const unsigned int n, const std::string &what) {
-            if (n > 0)
-              text += ", " + std::to_string(n) + ' ' + what;
-          };
-          add(run.steps->rejected, "rejected for their error");
-          add(run.steps->events, "rejected to resolve events of slip");
-          add(run.steps->failed, "that failed");
-          out << "Steps: " << text << '\n';
-          if (run.steps->unresolved > 0)
-            out << "Note: " << run.steps->unresolved
-                << " steps of the smallest size have larger errors than their "
-                   "tolerance allows: where the data jump, or because "
-                   "'Smallest step' is too large.\n";
-        }
-      if (run.implicit_steps)
-        out << "Steps by backward Euler, beyond the limit 2/r: "
-            << *run.implicit_steps << " of " << run.n_steps << '\n';
-    }
-
-
-
-    /// Print an estimated error by its causes.
-    template <int dim>
-    void
-    print_parts(std::ostream          &out,
-                const RunSummary<dim> &run,
-                const ErrorSummary    &errors)
-    {
-      const auto part = [&](const std::string &name, const double value) {
-        print_row(out,
-                  name,
-                  number(value, 2) +
-                    (errors.size > 0. ?
-                       " (" + number(100. * value / errors.size, 2) + " %)" :
-                       ""));
-      };
-      const ErrorParts &largest = errors.largest;
-      part("mesh", largest.space);
-      if (largest.history > 0.)
-        part("mesh, in the history", largest.history);
-      if (run.has_viscosity)
-        part("time steps", largest.time);
-      if (largest.friction > 0.)
-        part("friction bounds and turns", largest.friction);
-      if (largest.transfer > 0.)
-        part("changes of the mesh", largest.transfer);
-      part("iterations", largest.algebraic);
-      if (largest.initial > 0.)
-        part("initial data", largest.initial);
-      part(largest.history > 0. && !largest.history_adds ?
-             "sum, of meshes by squares" :
-             "sum",
-           largest.total());
-    }
-
-
-
-    template <int dim>
-    void
-    print_errors(std::ostream          &out,
-                 const Units           &units,
-                 const PlaceNames      &names,
-                 const RunSummary<dim> &run)
-    {
-      const auto error =
-        [&](const std::string &name, const double value, const double norm) {
-          if (norm > 0.)
-            print_row(out,
-                      "error of " + name,
-                      number(value) + " (" + number(100. * value / norm) +
-                        " % of it)");
+      /// Print an estimated error by its causes.
+      void
+      parts(const ErrorSummary &errors) const
+      {
+        const auto part = [&](const std::string &name, const double value) {
+          row(name,
+              number(value, 2) +
+                (errors.size > 0. ?
+                   " (" + number(100. * value / errors.size, 2) + " %)" :
+                   ""));
         };
-      const SolutionNorms &errors = run.largest_error,
-                          &exact  = run.largest_exact;
-      error("u in energy", errors.energy, exact.energy);
-      error("u in H1", errors.h1, exact.h1);
-      error("stress in L2", errors.stress, exact.stress);
-      error("multiplier in L2", errors.multiplier, exact.multiplier);
-      if (!run.errors)
-        return;
+        const ErrorParts &largest = errors.largest;
+        part("mesh", largest.space);
+        if (largest.history > 0.)
+          part("mesh, in the history", largest.history);
+        if (scene.has_viscosity())
+          part("time steps", largest.time);
+        if (largest.friction > 0.)
+          part("friction bounds and turns", largest.friction);
+        if (largest.transfer > 0.)
+          part("changes of the mesh", largest.transfer);
+        part("iterations", largest.algebraic);
+        if (largest.initial > 0.)
+          part("initial data", largest.initial);
+        part(largest.history > 0. && !largest.history_adds ?
+               "sum, of meshes by squares" :
+               "sum",
+             largest.total());
+      }
 
-      out << "Estimated error in the energy norm, largest at t = "
-          << with_unit_of_time(run.errors->t, units)
-          << ", and relative to the solution:\n";
-      print_parts(out, run, *run.errors);
-      if (!run.quantity.empty())
-        {
-          out << "Estimated error of " << names.quantity(run.quantity)
-              << ", largest at t = "
-              << with_unit_of_time(run.quantity_errors.t, units)
-              << ", and relative to its largest value:\n";
-          print_parts(out, run, run.quantity_errors);
-        }
-      if (run.tolerance && !run.has_zero_quantity() &&
-          run.controlled_errors().relative() <= *run.tolerance)
-        {
-          out << "The tolerance of " << 100. * *run.tolerance << " % has been ";
-          if (run.jump_position)
-            out << "met by the estimate alone: prescribed displacements jump "
-                   "at x = ("
-                << *run.jump_position
-                << "), as a warning says, and no error bar tells the true "
-                   "error.\n";
-          else if (run.has_coarse_curves)
-            out << "met by the estimate alone: the mesh is too coarse for the "
-                   "curved faces in contact to find each other; take more "
-                   "'Geometry/Global refinements'.\n";
-          else
-            out << "kept.\n";
-        }
-    }
+      /// Print an error against an exact solution.
+      void
+      error(const std::string &name,
+            const double       value,
+            const double       norm) const
+      {
+        if (norm > 0.)
+          row("error of " + name,
+              number(value) + " (" + number(100. * value / norm) + " % of it)");
+      }
+
+      void
+      estimated_errors() const
+      {
+        out << "Estimated error in the energy norm, largest at t = "
+            << time(run.errors->t) << ", and relative to the solution:\n";
+        parts(*run.errors);
+        if (!run.quantity.empty())
+          {
+            out << "Estimated error of " << scene.names.quantity(run.quantity)
+                << ", largest at t = " << time(run.quantity_errors.t)
+                << ", and relative to its largest value:\n";
+            parts(run.quantity_errors);
+          }
+        if (!run.tolerance || run.has_zero_quantity() ||
+            run.controlled_errors().relative() > *run.tolerance)
+          return;
+        out << "The tolerance of " << 100. * *run.tolerance << " % has been ";
+        if (run.jump_position)
+          out << "met by the estimate alone: prescribed displacements jump at "
+                 "x = ("
+              << *run.jump_position
+              << "), as a warning says, and no error bar tells the true "
+                 "error.\n";
+        else if (run.has_coarse_curves)
+          out << "met by the estimate alone: the mesh is too coarse for the "
+                 "curved faces in contact to find each other; take more "
+                 "'Geometry/Global refinements'.\n";
+        else
+          out << "kept.\n";
+      }
+    };
   } // namespace
 
 
 
   template <int dim>
   void
-  RunSummary<dim>::print(std::ostream     &out,
-                         const Units      &units,
-                         const PlaceNames &names) const
+  RunSummary<dim>::print(std::ostream &out, const Scene<dim> &scene) const
   {
-    print_end(out, units, names, *this);
-    print_largest(out, units, *this);
-    print_first(out, units, *this);
-    print_steps(out, *this);
-    print_errors(out, units, names, *this);
+    const SummaryPrinter<dim> print{out, scene, *this};
+    print.end();
+    print.largest_values();
+    print.first("touch", first_touch);
+    print.first("slip", first_slip);
+    print.steps();
+    print.error("u in energy", largest_error.energy, largest_exact.energy);
+    print.error("u in H1", largest_error.h1, largest_exact.h1);
+    print.error("stress in L2", largest_error.stress, largest_exact.stress);
+    print.error("multiplier in L2",
+                largest_error.multiplier,
+                largest_exact.multiplier);
+    if (errors)
+      print.estimated_errors();
   }
 
 
@@ -322,9 +288,7 @@ namespace Viscoplastic
   void
   RunBill::print(std::ostream &out) const
   {
-    std::map<std::string, double> remaining(seconds);
-    double                        rest = total;
-
+    double     rest = total;
     const auto print_line =
       [&](const std::string &name, const double time, const std::string &text) {
         std::ostringstream digits;
@@ -336,12 +300,10 @@ namespace Viscoplastic
         rest -= time;
       };
     out << "This scene paid, in seconds and as a share of the run:\n";
-    if (!has_viscosity)
-      remaining.erase("rate");
     for (const RunPhase &phase : run_phases)
       {
-        const auto found = remaining.find(phase.name);
-        if (found == remaining.end())
+        const auto found = seconds.find(phase.name);
+        if (found == seconds.end() || (phase.name == "rate" && !has_viscosity))
           continue;
         print_line(phase.effect,
                    found->second - (phase.name == "contact" ? friction() : 0.),
@@ -353,12 +315,8 @@ namespace Viscoplastic
                        "active set; with it, solves take " +
                          number(solves / *plain_solves, 3) + " times as long" :
                        "active set");
-        remaining.erase(found);
       }
-    // Phases that are not in the list, under their own names.
-    for (const auto &[name, time] : remaining)
-      print_line(name, time, "");
-    print_line("rest", double(rest), "mesh, initial state, progress");
+    print_line("rest", rest, "mesh, initial state, progress");
     print_line("whole run",
                total,
                earlier > 0. ?

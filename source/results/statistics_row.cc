@@ -17,7 +17,7 @@ namespace Viscoplastic
 
 
     void
-    add_errors(const SolutionErrors &errors, StatisticsRow &row)
+    add_errors(const SolutionErrors &errors, TableRow &row)
     {
       const auto add = [&row](const std::string   &prefix,
                               const SolutionNorms &norms) {
@@ -38,7 +38,7 @@ namespace Viscoplastic
     void
     add_estimates(const Scene<dim>    &scene,
                   const ErrorEstimate &estimate,
-                  StatisticsRow       &row)
+                  TableRow            &row)
     {
       row.add("energy_norm", estimate.energy_norm, Quantity::energy_norm);
       row.add("estimate_space", estimate.space, Quantity::energy_norm);
@@ -84,7 +84,7 @@ namespace Viscoplastic
                 const ContactFace<dim>    &face,
                 const AcceptedStep<dim>   &step,
                 const StepQuantities<dim> &quantities,
-                StatisticsRow             &row)
+                TableRow                  &row)
     {
       const FrictionIdentities &friction  = quantities.friction;
       const auto                add_force = [&row](const std::string &name,
@@ -149,7 +149,7 @@ namespace Viscoplastic
                  const Forces<dim>         &forces,
                  const StepQuantities<dim> &quantities,
                  const EnergyBalance       &balance,
-                 StatisticsRow             &row)
+                 TableRow                  &row)
     {
       const Scene<dim> &scene      = d.scene();
       const auto        add_energy = [&row](const std::string &name,
@@ -183,7 +183,7 @@ namespace Viscoplastic
 
 
   template <int dim>
-  StatisticsRow
+  TableRow
   Recorder<dim>::row(const AcceptedStep<dim>   &step,
                      const StepQuantities<dim> &quantities,
                      const SolutionErrors      &errors)
@@ -193,7 +193,7 @@ namespace Viscoplastic
     const StressSummary<dim>  &stress    = quantities.stress;
     const FrictionIdentities  &friction  = quantities.friction;
     const Forces<dim>         &forces    = step.end.forces;
-    StatisticsRow              row;
+    TableRow                   row;
     row.add("step", time_step.n);
     row.add("t", time_step.t, Quantity::time);
     row.add("k", time_step.k, Quantity::time);
@@ -272,7 +272,7 @@ namespace Viscoplastic
   template <int dim>
   void
   Recorder<dim>::add_asked_for(const StepQuantities<dim> &quantities,
-                               StatisticsRow             &row) const
+                               TableRow                  &row) const
   {
     const double *value = quantities.point_fields.data();
     const bool are_few  = quantities.point_displacements.size() <= most_printed;
@@ -301,7 +301,7 @@ namespace Viscoplastic
 
   template <int dim>
   void
-  Recorder<dim>::add_seconds(StatisticsRow &row)
+  Recorder<dim>::add_seconds(TableRow &row)
   {
     const auto total = stopped_clock ?
                          stopped_clock->first :

@@ -130,7 +130,7 @@ namespace Viscoplastic
     lines.open(directory());
     begin_checkpoints();
     if (Utilities::MPI::this_mpi_process(communicator) == 0)
-      run.recorder.write_to(std::make_unique<Statistics>(
+      run.recorder.write_to(std::make_unique<TableFile>(
         directory() + "statistics.csv", parameters.units, dim));
   }
 
@@ -144,8 +144,12 @@ namespace Viscoplastic
     const unsigned int n     = state.n;
     fail_together(communicator, [&]() {
       if (Utilities::MPI::this_mpi_process(communicator) == 0)
-        run.recorder.write_to(std::make_unique<Statistics>(
-          results_directory(parameters) + "statistics.csv", n));
+        run.recorder.write_to(
+          std::make_unique<TableFile>(results_directory(parameters) +
+                                        "statistics.csv",
+                                      parameters.units,
+                                      dim,
+                                      n));
     });
     output.emplace(run.scene, communicator);
     output->resume(archive.data.output_times);

@@ -11,10 +11,10 @@ namespace
 {
   using namespace Viscoplastic;
 
-  StatisticsRow
+  TableRow
   row_of(const int step, const std::string &column, const double value)
   {
-    StatisticsRow row;
+    TableRow row;
     row.add("step", step);
     row.add(column, value, Quantity::time);
     return row;
@@ -28,12 +28,12 @@ namespace
     const Testing::Folder folder;
     const std::string     file = folder.add("statistics.csv", "");
     {
-      Statistics table(file, Units("m", "day", "MPa"), 2);
+      TableFile table(file, Units("m", "day", "MPa"), 2);
       for (const int n : {0, 1})
         table.write(row_of(n, "t", 2. * n));
     }
     {
-      Statistics table(file, /* last_step = */ 1);
+      TableFile table(file, Units("m", "day", "MPa"), 2, /* last_step = */ 1);
       table.write(row_of(2, "t", 5.));
       EXPECT_THROW(table.write(row_of(3, "k", 5.)), std::exception);
     }

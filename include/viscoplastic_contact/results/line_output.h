@@ -4,7 +4,6 @@
 #include <viscoplastic_contact/results/field_probes.h>
 #include <viscoplastic_contact/results/statistics.h>
 
-#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -56,8 +55,8 @@ namespace Viscoplastic
     const Discretization<dim> *discretization = nullptr;
     /// The fields along each line on the present mesh; empty until the first
     /// output.
-    std::vector<std::unique_ptr<FieldProbes<dim>>> probes;
+    std::vector<FieldProbes<dim>> probes;
     /// Empty on ranks other than 0.
-    std::vector<std::unique_ptr<TableFile>> files;
+    std::vector<TableFile> files;
   };
 } // namespace Viscoplastic

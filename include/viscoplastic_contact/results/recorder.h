@@ -54,7 +54,7 @@ namespace Viscoplastic
     /// Write the rows to a table from here on; on rank 0. Without a table they
     /// are not written.
     void
-    write_to(std::unique_ptr<Statistics> table)
+    write_to(std::unique_ptr<TableFile> table)
     {
       statistics = std::move(table);
     }
@@ -184,18 +184,17 @@ namespace Viscoplastic
 
     /// Make the row of statistics.csv of a step. Names and units of quantities,
     /// and when a scene has them, are defined only here.
-    StatisticsRow
+    TableRow
     row(const AcceptedStep<dim>   &step,
         const StepQuantities<dim> &quantities,
         const SolutionErrors      &errors);
 
     /// Add the requested values at points and integrals.
     void
-    add_asked_for(const StepQuantities<dim> &quantities,
-                  StatisticsRow             &row) const;
+    add_asked_for(const StepQuantities<dim> &quantities, TableRow &row) const;
 
     void
-    add_seconds(StatisticsRow &row);
+    add_seconds(TableRow &row);
 
     /// The part of the run that has been made after step n, which ends at t.
     double
@@ -247,8 +246,8 @@ namespace Viscoplastic
     /// Subjects of warnings about steps, each of which is printed once.
     std::set<std::string> told;
 
-    std::unique_ptr<Statistics> statistics;
-    Progress                    progress;
+    std::unique_ptr<TableFile> statistics;
+    Progress                   progress;
     /// Wall time by phase at the last record, and, for a record that comes
     /// later, at stop_clock(), with the total.
     std::map<std::string, double> last_seconds;
@@ -273,20 +272,20 @@ namespace Viscoplastic
       &newton_iterations &implicit_steps &dissipated &effects;
     archive &run.unchanged_steps &run.first_touch &run.first_slip &run
       .friction_area &run.missed_bounds &run.computed_bounds;
-    for (Largest *largest : {&run.displacement,
-                             &run.strain,
-                             &run.von_mises,
-                             &run.pressure,
-                             &run.slip_area,
-                             &run.slip_rate,
-                             &run.capped_volume,
-                             &run.tension_share,
-                             &run.slide,
-                             &run.utilization,
-                             &run.stiffness})
+    for (Largest<dim> *largest : {&run.displacement,
+                                  &run.strain,
+                                  &run.von_mises,
+                                  &run.pressure,
+                                  &run.slip_area,
+                                  &run.slip_rate,
+                                  &run.capped_volume,
+                                  &run.tension_share,
+                                  &run.slide,
+                                  &run.utilization,
+                                  &run.stiffness})
       archive & largest->value & largest->t;
-    archive &run.critical_position &run.displacement_position &run
-      .von_mises_position;
+    archive &run.stiffness.position &run.displacement.position &run.von_mises
+      .position;
     for (SolutionNorms *norms : {&run.largest_error, &run.largest_exact})
       archive & norms->energy & norms->h1 & norms->stress & norms->multiplier;
     if (run.errors)

@@ -2,14 +2,11 @@
 #pragma once
 
 #include <deal.II/base/point.h>
-#include <deal.II/base/tensor.h>
-#include <deal.II/base/types.h>
 
-#include <viscoplastic_contact/base/units.h>
 #include <viscoplastic_contact/error/error_estimate.h>
 #include <viscoplastic_contact/error/solution_norms.h>
 #include <viscoplastic_contact/results/statistics.h>
-#include <viscoplastic_contact/scene/place_names.h>
+#include <viscoplastic_contact/scene/scene.h>
 #include <viscoplastic_contact/time_stepping/step_control.h>
 
 #include <map>
@@ -63,20 +60,21 @@ namespace Viscoplastic
 
   using namespace dealii;
 
-  /// The largest value over a run, and the time at which it was reached.
+  /// The largest value over a run, the time at which it was reached, and its
+  /// place if that is recorded.
+  template <int dim>
   struct Largest
   {
-    double value = 0., t = 0.;
+    double     value = 0., t = 0.;
+    Point<dim> position = {};
 
-    /// Update with a value; returns whether it is larger than all before.
-    bool
-    update(const double new_value, const double new_t)
+    void
+    update(const double      new_value,
+           const double      new_t,
+           const Point<dim> &where = {})
     {
-      if (!(new_value > value))
-        return false;
-      value = new_value;
-      t     = new_t;
-      return true;
+      if (new_value > value)
+        *this = {new_value, new_t, where};
     }
   };
 
@@ -113,9 +111,9 @@ namespace Viscoplastic
   struct RunSummary
   {
     /// The end of the last step, and the values there.
-    double                            t = 0.;
-    std::vector<StatisticsRow::Entry> at_end;
-    bool has_viscosity = false, has_flowed = false, has_friction = false;
+    double                       t = 0.;
+    std::vector<TableRow::Entry> at_end;
+    bool                         has_flowed = false;
     /// The refinement estimate of an adaptive scene without error estimate.
     std::optional<double> error_estimate;
     /// The errors of a scene with error estimate.
@@ -150,17 +148,16 @@ namespace Viscoplastic
              !has_coarse_curves;
     }
 
-    Largest displacement, strain, von_mises, pressure, slip_area, slip_rate,
-      capped_volume, utilization;
+    /// Displacement and von Mises stress have places.
+    Largest<dim> displacement, strain, von_mises, pressure, slip_area,
+      slip_rate, capped_volume, utilization;
     /// The first steps with contact and with slip.
     FirstStep first_touch, first_slip;
     /// The part of the faces in bilateral contact on which the foundation is in
     /// tension.
-    Largest tension_share;
+    Largest<dim> tension_share;
     /// InterfaceSlide::largest().
-    Largest slide;
-    /// The positions of the largest displacement and von Mises stress.
-    Point<dim> displacement_position, von_mises_position;
+    Largest<dim> slide;
     /// The area of all friction points on the mesh on which slip_area was
     /// largest.
     double friction_area = 0.;
@@ -170,8 +167,7 @@ namespace Viscoplastic
     /// Sentences on the first steps with possibly several solutions.
     std::vector<std::string> doubtful_steps;
     /// The largest k r, and the position of the largest r in that step.
-    Largest    stiffness;
-    Point<dim> critical_position;
+    Largest<dim> stiffness;
     /// The number of steps; counts of step control follow below, absent where
     /// the steps are those of the phases.
     unsigned int n_steps = 0;
@@ -185,10 +181,9 @@ namespace Viscoplastic
     /// the exact solution; zero without one.
     SolutionNorms largest_error, largest_exact;
 
-    /// Print the summary, with units if @p units are declared, and with @p
-    /// names of places.
+    /// Print the summary, with units if the scene declares them.
     void
-    print(std::ostream &out, const Units &units, const PlaceNames &names) const;
+    print(std::ostream &out, const Scene<dim> &scene) const;
   };
 
 

@@ -10,11 +10,10 @@
 
 namespace Viscoplastic
 {
-  /// The record of a step: for each quantity its name, unit and value, and
-  /// whether it is printed at the end of a run. statistics.csv, its unit labels
-  /// and the final output are made from it; Recorder::row() alone defines the
-  /// quantities.
-  class StatisticsRow
+  /// A row of a table: for each quantity its name, unit and value, and whether
+  /// it is printed at the end of a run. statistics.csv, its unit labels and the
+  /// final output are made from those of Recorder::row().
+  class TableRow
   {
   public:
     /// For add(): the value at the end of a run is printed.
@@ -60,73 +59,48 @@ namespace Viscoplastic
         entries.back().values.push_back(value[d]);
     }
 
+    /// Throw ExcMessage if a value is neither finite nor NaN for what is not
+    /// known.
+    void
+    require_finite() const;
+
     std::vector<Entry> entries;
   };
 
 
 
-  /// A file of rows that begin with the number of a step, the first line
-  /// excepted. Rows are flushed, so that those of a run that is killed remain.
-  /// Throws ExcMessage if the file cannot be written.
+  /// A file of comma separated values with rows that begin with the number of a
+  /// step. The first row defines the columns, whose names are the first line,
+  /// followed by unit labels such as [MPa] if the scene declares units. Rows
+  /// are flushed, so that those of a run that is killed remain. Throws
+  /// ExcMessage if the file cannot be written.
   class TableFile
   {
   public:
-    /// Begin a file anew, or continue it after step @p last_step, dropping
-    /// later rows; throws, before anything is changed, if there are fewer than
-    /// @p least_rows up to that step.
-    explicit TableFile(const std::string                 &name,
-                       const std::optional<unsigned int> &last_step  = {},
-                       const std::size_t                  least_rows = 1);
-
-    void
-    write(const std::string &rows);
-
-    /// Flush all rows to disk.
-    void
-    synchronize() const;
-
-    const std::string name;
-    /// The first line of a file that is continued.
-    std::string header;
-
-  private:
-    std::ofstream file;
-  };
-
-
-  /// A table of comma separated values. The first row defines the columns. The
-  /// first line has the names of the columns, followed by a blank and unit
-  /// labels such as [MPa] if the scene declares units.
-  class Statistics
-  {
-  public:
-    /// Begin a table of a scene with these @p units in @p dim dimensions.
-    /// Throws ExcMessage if @p file cannot be written.
-    Statistics(const std::string &file,
-               const Units       &units,
-               const unsigned int dim);
-
-    /// Continue a file after the row of step @p last_step, whose first column
-    /// counts steps from 0; drops later rows. Throws ExcMessage if a row up to
-    /// that step is missing, before anything is changed.
-    Statistics(const std::string &file, const unsigned int last_step);
+    /// Begin a file of a scene with these @p units in @p dim dimensions, or
+    /// continue it after step @p last_step, dropping later rows; throws, before
+    /// anything is changed, if there are fewer than @p least_rows up to that
+    /// step.
+    TableFile(const std::string                 &name,
+              const Units                       &units,
+              const unsigned int                 dim,
+              const std::optional<unsigned int> &last_step  = {},
+              const std::size_t                  least_rows = 1);
 
     /// Write a row; integers print as such. Throws ExcMessage if writing fails,
-    /// if the columns differ from earlier ones, or if a value is not finite.
+    /// or if the columns differ from earlier ones.
     void
-    write(const StatisticsRow &row);
+    write(const TableRow &row);
 
     /// Flush all rows to disk. Throws ExcMessage.
     void
-    synchronize() const
-    {
-      file.synchronize();
-    }
+    synchronize() const;
 
   private:
-    TableFile                file;
-    Units                    units;
-    unsigned int             dim = 0;
+    const std::string        name;
+    const Units              units;
+    const unsigned int       dim;
+    std::ofstream            file;
     std::vector<std::string> columns;
   };
 } // namespace Viscoplastic

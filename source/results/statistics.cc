@@ -82,6 +82,7 @@ namespace Viscoplastic
   void
   TableFile::write(const TableRow &row)
   {
+    const bool               is_first = columns.empty();
     std::vector<std::string> names;
     std::ostringstream       header, text;
     text << std::setprecision(12);
@@ -90,11 +91,12 @@ namespace Viscoplastic
         {
           const char *separator = names.empty() ? "" : ",";
           names.push_back(entry.column(i));
-          header << separator << names.back()
-                 << units.label(entry.quantity, dim);
           text << separator << entry.values[i];
+          if (is_first)
+            header << separator << names.back()
+                   << units.label(entry.quantity, dim);
         }
-    if (columns.empty())
+    if (is_first)
       {
         columns = names;
         file << header.str() << '\n';

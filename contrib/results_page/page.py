@@ -81,8 +81,8 @@ law at the smallest tolerance ([all](accuracy_known_to_tolerance.csv)).
 {known_to_tolerance}
 Bodies that have crept for 1000 relaxation times, with steps of backward Euler: estimates
 over errors on uniform and adaptive meshes and in runs to a tolerance, and the errors of
-these, of the energy norm and of a quantity. The reference has a quarter of the mesh width
-(half in three dimensions) and four times the steps. Each way, also at 1, 10 and 100
+these, of the energy norm and of a quantity. The reference has an eighth of the mesh width
+(of Lee and Radok's a quarter) and four times the steps. Each way, also at 1, 10 and 100
 relaxation times, is a row of [accuracy_long_creep.csv](accuracy_long_creep.csv).
 
 {long_creep}

@@ -221,14 +221,14 @@ LONG_CREEP = {
         "verification/hard/norton_cylinder",
         "point0_x",
         (0.05, 0.02),
-        2,
+        3,
         {**_CYLINDER, **_creep(0.001), "Material/norton/Exponent": "5"},
     ),
     "thick cylinder, maxwell": (
         "verification/hard/norton_cylinder",
         "point0_x",
         (0.05, 0.02),
-        2,
+        3,
         {**_CYLINDER, **_creep(0.001), **_MAXWELL},
     ),
     "hollow sphere, norton": (
@@ -253,7 +253,7 @@ LONG_CREEP = {
         "verification/hard/norton_cylinder",
         "point0_x",
         (0.1, 0.02),
-        2,
+        3,
         {
             **_CYLINDER,
             **_creep(0.03, 6, "0.001: 2, "),
@@ -275,14 +275,14 @@ LONG_CREEP = {
         "verification/cantilever_creep",
         "point0_y",
         (0.2, 0.02),
-        2,
+        3,
         {**_CANTILEVER, **_creep(1.3)},
     ),
     "cantilever, norton": (
         "verification/cantilever_creep",
         "point0_y",
         (0.2, 0.02),
-        2,
+        3,
         {
             **_CANTILEVER,
             **_creep(1),
@@ -296,7 +296,7 @@ LONG_CREEP = {
         "verification/indentation_3d",
         "contact_force_z",
         (0.2, 0.1),
-        1,
+        2,
         {
             **_creep(1, 3, "0.1: 2, "),
             "Geometry/Arguments": "4, 4, 4 : 0, 0, 0 : 8, 8, 8 : true",
@@ -310,14 +310,14 @@ LONG_CREEP = {
         "demos/salt_pillar_2d",
         "reaction_2_y",
         (0.1, 0.02),
-        2,
+        3,
         {**_creep(4e6), "Geometry/Arguments": "12, 6 : 0, 0 : 6, 3 : true"},
     ),
     "salt joint, norton": (
         "demos/salt_joint_2d",
         "point1_y",
         (0.1, 0.02),
-        2,
+        3,
         {
             **_creep(140, 6, "20: 2, 40: 4, "),
             "Geometry/Arguments": "8, 16 : -1, 0 : 1, 4 : true",
@@ -330,7 +330,7 @@ LONG_CREEP = {
         "verification/slab",
         "point0_x",
         (0.05, 0.001),
-        2,
+        3,
         {
             **_creep(0.0004),
             "Geometry/Arguments": "16, 4 : 0, 0 : 4, 1 : true",

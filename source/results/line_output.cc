@@ -72,6 +72,7 @@ namespace Viscoplastic
                 row.add(column.name, *value++, column.quantity);
               files[i].write(row);
             }
+          files[i].flush();
         });
       }
   }

@@ -118,6 +118,7 @@ namespace Viscoplastic
       {
         recorded.require_finite();
         statistics->write(recorded);
+        statistics->flush();
       }
     report_progress(step, quantities);
     stopped_clock.reset();

@@ -104,8 +104,15 @@ namespace Viscoplastic
     if (columns != names)
       refuse("The columns of '" + name +
              "' are not those of this run, which cannot go on with it.");
-    file << text.str() << '\n' << std::flush;
-    if (!file)
+    file << text.str() << '\n';
+  }
+
+
+
+  void
+  TableFile::flush()
+  {
+    if (!file.flush())
       refuse("Writing to '" + name + "' failed; is the disk full?");
   }
 
@@ -114,7 +121,7 @@ namespace Viscoplastic
   void
   TableFile::synchronize() const
   {
-    // The stream has been flushed by write().
+    // The stream has been flushed.
     Viscoplastic::synchronize(name);
   }
 } // namespace Viscoplastic

@@ -71,8 +71,7 @@ namespace Viscoplastic
 
   /// A file of comma separated values with rows that begin with the number of a
   /// step. The first row defines the columns, whose names are the first line,
-  /// followed by unit labels such as [MPa] if the scene declares units. Rows
-  /// are flushed, so that those of a run that is killed remain. Throws
+  /// followed by unit labels such as [MPa] if the scene declares units. Throws
   /// ExcMessage if the file cannot be written.
   class TableFile
   {
@@ -87,12 +86,17 @@ namespace Viscoplastic
               const std::optional<unsigned int> &last_step  = {},
               const std::size_t                  least_rows = 1);
 
-    /// Write a row; integers print as such. Throws ExcMessage if writing fails,
-    /// or if the columns differ from earlier ones.
+    /// Write a row; integers print as such. Throws ExcMessage if the columns
+    /// differ from earlier ones.
     void
     write(const TableRow &row);
 
-    /// Flush all rows to disk. Throws ExcMessage.
+    /// Hand all rows to the system, so that those of a run that is killed
+    /// remain. Throws ExcMessage if writing has failed.
+    void
+    flush();
+
+    /// Force the rows that have been flushed to disk. Throws ExcMessage.
     void
     synchronize() const;
 

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <deal.II/base/patterns.h>
-
+#include <viscoplastic_contact/base/files.h>
 #include <viscoplastic_contact/base/messages.h>
 #include <viscoplastic_contact/base/subsection.h>
 #include <viscoplastic_contact/laws/law_library.h>
@@ -8,9 +7,9 @@
 #include <viscoplastic_contact/parameters/parameter_text.h>
 #include <viscoplastic_contact/parameters/parameter_tree.h>
 #include <viscoplastic_contact/parameters/quantities.h>
-#include <viscoplastic_contact/parameters/table_sections.h>
 #include <viscoplastic_contact/parameters/wrong_lines.h>
 
+#include <filesystem>
 #include <sstream>
 
 namespace Viscoplastic
@@ -49,55 +48,6 @@ namespace Viscoplastic
       {
         refuse(line->origin() + ": " + reason_of_current_exception());
       }
-  }
-
-
-
-  void
-  Parameters::declare()
-  {
-    const auto in_subsection = [this](const std::string &name, auto &entries) {
-      const Subsection subsection(handler, name);
-      entries.declare(handler);
-    };
-    handler.add_parameter("Dimension",
-                          dimension,
-                          "2 (plane strain, or a body of revolution) or 3.",
-                          Patterns::Integer(2, 3));
-    // The names of libraries are replaced by paths that do not depend on the
-    // working directory, as is the name of the mesh file.
-    handler.declare_entry(
-      shared_libraries_entry,
-      "",
-      Patterns::Anything(),
-      "Files with laws that are not part of the program, separated by commas; "
-      "relative to the parameter file, or to the working directory.");
-    in_subsection("Units", unit_names);
-    in_subsection("Geometry", geometry);
-    const auto declare_material = [this](const std::string  &name,
-                                         MaterialParameters &entries) {
-      const Subsection subsection(handler, name);
-      entries.declare(handler, laws);
-    };
-    declare_material("Material", material);
-    in_subsection("Material", stress);
-    for (auto &[id, numbered] : materials)
-      declare_material("Material " + std::to_string(id), numbered);
-    in_subsection("Loads", loads);
-    in_subsection("Temperature", temperature);
-    in_subsection("Initial state", initial_state);
-    in_subsection("Exact solution", exact_solution);
-    for (auto &[id, boundary] : boundaries)
-      in_subsection("Boundary " + std::to_string(id), boundary);
-    in_subsection("Supports", supports);
-    in_subsection("Time", time);
-    in_subsection("Step control", step_control);
-    in_subsection("Solver", solver);
-    in_subsection("Error control", error_control);
-    in_subsection("Mesh refinement", refinement);
-    in_subsection("Output", output);
-    in_subsection("Checkpoint", checkpoint);
-    in_subsection("Study", study);
   }
 
 
@@ -143,17 +93,60 @@ namespace Viscoplastic
 
 
 
+  std::string
+  Parameters::locate_file(const std::string                &section,
+                          const std::vector<ParameterLine> &lines)
+  {
+    const ParameterLine &line = *last_line(lines, section + "/File");
+    const std::string    path = line.locate(line.value);
+    const Subsection     subsection(handler, section);
+    handler.set("File", path);
+    return path;
+  }
+
+
+
+  void
+  Parameters::read_tables(const std::vector<ParameterLine> &lines)
+  {
+    Tables result;
+    for (const auto &[number, table] : tables)
+      if (!table.file.empty())
+        {
+          const std::string section = "Table " + std::to_string(number),
+                            given   = table.file,
+                            file    = locate_file(section, lines);
+          try
+            {
+              std::error_code none;
+              const auto      text = std::filesystem::is_directory(file, none) ?
+                                       std::nullopt :
+                                       read_file_if_any(file);
+              if (!text)
+                refuse("the table '" + file + "' cannot be read.");
+              result.push_back(std::make_shared<const DataTable>(
+                *text, given, section, table.interpolation, table.outside));
+            }
+          catch (const std::exception &exception)
+            {
+              refuse(origin_of(section + "/File") + ": " + reason(exception));
+            }
+        }
+    use_tables(result);
+  }
+
+
+
   void
   Parameters::check_material(const std::vector<ParameterLine> &lines) const
   {
     const Tree declared = declared_entries(handler);
     for (const ParameterLine &line : lines)
-      if (!line.is_opening && !line.name.empty() &&
-          line.section.compare(0, 9, "Material/") == 0 &&
+      if (line.sets_entry() && line.section.compare(0, 9, "Material/") == 0 &&
           line.name != "Volumetric integration" &&
           line.name != "Stress history")
         {
-          const std::string path = line.section + line.name;
+          const std::string path = line.path();
           const Tree &entry = declared.get_child(Tree::path_type(path, '/'));
           // Defaults are allowed, since the record of a run contains them.
           if (line.value != entry.get<std::string>("default_value"))
@@ -248,35 +241,30 @@ namespace Viscoplastic
     : file(files.empty() ? "" : files[0])
   {
     std::vector<ParameterLine> lines = read_parameter_lines(files, overrides);
-    std::set<unsigned int>     tables;
     for (const ParameterLine &line : lines)
-      if (line.is_opening && line.section.empty())
+      if (line.sets_entry())
+        origins[line.path()] = line.origin();
+      else if (line.is_opening && line.section.empty())
         {
-          const std::size_t blank = line.name.find(' ');
-          const std::string kind  = line.name.substr(0, blank);
-          const auto        id    = [&] {
-            return static_cast<unsigned int>(
-              std::stoul(line.name.substr(blank)));
-          };
-          if (blank == std::string::npos)
+          std::istringstream words(line.name);
+          std::string        kind;
+          unsigned int       id;
+          if (!(words >> kind >> id))
             continue;
           if (kind == "Boundary")
-            boundaries[id()];
+            boundaries[id];
           else if (kind == "Material")
-            materials[id()];
+            materials[id];
           else if (kind == "Table")
-            tables.insert(id());
+            tables[id];
         }
-    for (const ParameterLine &line : lines)
-      if (!line.is_opening && !line.name.empty())
-        origins[line.section + line.name] = line.origin();
     load_shared_libraries(lines);
-    declare();
-    declare_tables(handler, tables);
+    declare_scene();
+    declare_run();
     units      = declared_units(lines);
     as_written = remove_units(lines, units, handler);
     read(lines);
-    use_tables(read_tables(handler, tables, lines));
+    read_tables(lines);
     units.are_of_whole_bodies =
       geometry.plane_model == PlaneModel::axisymmetric;
     handler.set(shared_libraries_entry,
@@ -286,12 +274,7 @@ namespace Viscoplastic
     if (units.are_declared())
       check_defaults_of_materials();
     if (!geometry.file.empty())
-      {
-        // The record of the run does not depend on the working directory.
-        const Subsection subsection(handler, "Geometry");
-        handler.set("File",
-                    last_line(lines, "Geometry/File")->locate(geometry.file));
-      }
+      locate_file("Geometry", lines);
     resolve_automatic_choices();
     refinement.check();
     if (solver.contact_tolerance != 0. && !(solver.contact_tolerance >= 1e-14))

@@ -211,7 +211,7 @@ namespace Viscoplastic
           {
             line.name              = Utilities::trim(rest.substr(0, equals));
             line.value             = Utilities::trim(rest.substr(equals + 1));
-            const std::string path = section + line.name;
+            const std::string path = line.path();
             const auto [earlier, is_new] =
               source.set.emplace(path, line.number);
             if (!is_new)
@@ -241,7 +241,7 @@ namespace Viscoplastic
     std::error_code error;
     const fs::path  found = fs::exists(beside, error) ? beside : given;
     if (!fs::exists(found, error))
-      refuse(origin() + ": '" + section + name + "' is '" + excerpt(value) +
+      refuse(origin() + ": '" + path() + "' is '" + excerpt(value) +
              "', but there is no such file" +
              (value == file ? "" : " as '" + excerpt(file) + "'") +
              (beside == given ? "." :
@@ -257,7 +257,7 @@ namespace Viscoplastic
   {
     const auto line =
       std::find_if(lines.rbegin(), lines.rend(), [&path](const auto &one) {
-        return !one.is_opening && one.section + one.name == path;
+        return !one.is_opening && one.path() == path;
       });
     return line == lines.rend() ? nullptr : &*line;
   }

@@ -9,9 +9,7 @@
 
 #include <cmath>
 #include <cstdlib>
-#include <iomanip>
 #include <limits>
-#include <sstream>
 
 namespace Viscoplastic
 {
@@ -47,15 +45,11 @@ namespace Viscoplastic
     std::string
     shortest(const double number)
     {
-      std::ostringstream text;
-      text << std::setprecision(15) << number;
-      if (std::abs(std::strtod(text.str().c_str(), nullptr) - number) >
-          std::numeric_limits<double>::epsilon() * std::abs(number))
-        {
-          text.str("");
-          text << std::setprecision(17) << number;
-        }
-      return text.str();
+      const std::string text = as_text(number, 15);
+      return std::abs(std::strtod(text.c_str(), nullptr) - number) >
+                 std::numeric_limits<double>::epsilon() * std::abs(number) ?
+               as_text(number, 17) :
+               text;
     }
 
 
@@ -260,9 +254,9 @@ namespace Viscoplastic
     std::optional<Tree> declared; // made only if needed, since it is slow
     for (ParameterLine &line : lines)
       {
-        if (line.is_opening || line.name.empty())
+        if (!line.sets_entry())
           continue;
-        const std::string path = line.section + line.name;
+        const std::string path = line.path();
         as_written.erase(path);
         try
           {

@@ -23,7 +23,7 @@ namespace Viscoplastic
     using Tree  = boost::property_tree::ptree;
     using Names = std::vector<std::string>;
     /// Paths `Section/Entry' and values, in the order of declaration.
-    using Entries = std::vector<std::pair<std::string, std::string>>;
+    using NamedValues = std::vector<std::pair<std::string, std::string>>;
 
 
 
@@ -38,7 +38,7 @@ namespace Viscoplastic
     /// Return the names of the entries in @p section, or of its subsections.
     Names
     names_in(const std::string &section,
-             const Entries     &entries,
+             const NamedValues &entries,
              const bool         of_subsections)
     {
       Names names;
@@ -59,7 +59,7 @@ namespace Viscoplastic
   std::string
   unknown_name(const ParameterLine &line, const Tree &declared)
   {
-    const Entries     entries = values_of(declared);
+    const NamedValues entries = values_of(declared);
     const bool        opens   = line.is_opening;
     const std::string what    = opens ? "subsection" : "entry";
     const std::string parent  = line.section.substr(0, line.section.rfind('/'));
@@ -180,7 +180,7 @@ namespace Viscoplastic
   std::string
   wrong_value(const ParameterLine &line, const Tree &declared)
   {
-    const std::string path    = line.section + line.name;
+    const std::string path    = line.path();
     const auto        pattern = declared.get<std::string>(
       Tree::path_type(path + "/pattern_description", '/'));
     const Names choices =

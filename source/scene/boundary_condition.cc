@@ -34,29 +34,32 @@ namespace Viscoplastic
     /// The given contact law; by default the one that the paper combines with
     /// the friction law: given normal stress for Coulomb's, else bilateral.
     const ContactLaw *
-    contact_law_of(const types::boundary_id id, const BoundaryParameters &given)
+    contact_law_of(const types::boundary_id id,
+                   const std::string       &name,
+                   const FrictionLaw       &friction)
     {
-      using Kind                  = ContactLaw::Kind;
-      const bool follows_pressure = given.friction_law->follows_pressure();
-      if (given.contact_law == nullptr)
+      using Kind                         = ContactLaw::Kind;
+      const bool        follows_pressure = friction.follows_pressure();
+      const ContactLaw *given            = find_named(contact_laws(), name);
+      if (given == nullptr)
         return find_named(contact_laws(),
                           follows_pressure ? "given normal stress" :
                                              "bilateral");
-      const ContactLaw &law = *given.contact_law;
+      const ContactLaw &law = *given;
       const auto refuse_if  = [&](const bool when, const std::string &reason) {
         if (when)
           refuse("'" + entry(id, "Contact law") + "' is " + law.name +
                  ", but " + reason);
       };
       refuse_if(law.kind == Kind::bilateral && follows_pressure,
-                "'Friction law' = " + given.friction_law->name +
+                "'Friction law' = " + friction.name +
                   " needs a pressure: that of unilateral contact, or a given "
                   "normal stress.");
       refuse_if(
         law.kind == Kind::given_stress && !follows_pressure,
         "with 'Friction law' other than coulomb that is a load: use the "
         "role traction with a 'Pressure'.");
-      refuse_if(law.kind == Kind::unilateral && given.friction_law->is_glued,
+      refuse_if(law.kind == Kind::unilateral && friction.is_glued,
                 "what is glued cannot open; leave one of them out.");
       return &law;
     }
@@ -140,6 +143,8 @@ namespace Viscoplastic
     uses(const BoundaryCondition<dim> &condition, const std::string &name)
     {
       const bool is_contact = condition.role == BoundaryRole::contact;
+      if (name == "Contact law" || name == "Friction law")
+        return is_contact;
       if (name == "Displacement")
         return condition.role == BoundaryRole::displacement;
       if (name == "Traction" || name == "Pressure" ||
@@ -166,14 +171,6 @@ namespace Viscoplastic
 
 
 
-    bool
-    is_given(const std::string &text)
-    {
-      return !Utilities::trim(text).empty();
-    }
-
-
-
     /// Reads the entries of a condition whose role and laws are known. Unused
     /// entries are parsed as well, so that errors in them are found before the
     /// role changes.
@@ -181,17 +178,28 @@ namespace Viscoplastic
     struct EntryReader
     {
       const BoundaryCondition<dim> &condition;
+      const BoundaryParameters     &given;
+
+      const std::string &
+      text(const std::string &name) const
+      {
+        return given.entries.at(name);
+      }
+
+      bool
+      has(const std::string &name) const
+      {
+        return !Utilities::trim(text(name)).empty();
+      }
 
       std::optional<Expression<dim>>
-      scalar(const std::string &name, const std::string &text) const
+      scalar(const std::string &name, const bool is_needed = true) const
       {
         std::optional<Expression<dim>> result;
         const bool                     is_used = uses(condition, name);
-        if (is_given(text))
-          result.emplace(text, entry(condition.id, name));
-        else if (is_used && name != "Pressure" && name != "Normal stiffness" &&
-                 name != "Tangential stiffness" && name != "Gap" &&
-                 !(condition.solution && name == "Normal stress"))
+        if (has(name))
+          result.emplace(text(name), entry(condition.id, name));
+        else if (is_used && is_needed)
           refuse("'" + entry(condition.id, name) + "' is missing; the " +
                  (condition.friction_law->has(name) ?
                     "friction law " + condition.friction_law->name :
@@ -204,9 +212,10 @@ namespace Viscoplastic
 
       /// Absent where identically zero.
       std::optional<Expression<dim>>
-      nonzero_scalar(const std::string &name, const std::string &text) const
+      nonzero_scalar(const std::string &name,
+                     const bool         is_needed = false) const
       {
-        auto result = scalar(name, text);
+        auto result = scalar(name, is_needed);
         if (result && result->is_zero())
           result.reset();
         return result;
@@ -214,9 +223,9 @@ namespace Viscoplastic
 
       /// Absent where identically zero.
       std::optional<Expression<dim>>
-      stiffness(const std::string &name, const std::string &text) const
+      stiffness(const std::string &name) const
       {
-        auto result = nonzero_scalar(name, text);
+        auto result = nonzero_scalar(name);
         refuse_time(result, name, "springs do", "traction");
         return result;
       }
@@ -234,26 +243,27 @@ namespace Viscoplastic
       }
 
       std::optional<VectorExpression<dim>>
-      vector(const std::string &name, const std::string &text) const
+      vector(const std::string &name) const
       {
         auto result =
-          optional_vector<dim>(text, dim, entry(condition.id, name));
+          optional_vector<dim>(text(name), dim, entry(condition.id, name));
         if (!uses(condition, name))
           result.reset();
         return result;
       }
 
       std::array<std::optional<Expression<dim>>, dim>
-      displacement(const std::string &text) const
+      displacement() const
       {
         const std::string name    = entry(condition.id, "Displacement");
         const bool        is_used = uses(condition, "Displacement");
-        if (!is_used && !is_given(text))
+        if (!is_used && !has("Displacement"))
           return {};
-        auto result =
-          condition.solution ?
-            derived_components<dim>(text, name, *condition.solution) :
-            given_components<dim>(text, name);
+        auto result = condition.solution ?
+                        derived_components<dim>(text("Displacement"),
+                                                name,
+                                                *condition.solution) :
+                        given_components<dim>(text("Displacement"), name);
         if (!is_used)
           return {};
         if (!std::any_of(result.begin(), result.end(), [](const auto &one) {
@@ -279,18 +289,20 @@ namespace Viscoplastic
     , role(parameters.role)
     , solution(solution)
   {
+    const EntryReader<dim> read{*this, parameters};
     require_given(id,
                   "Role",
                   role != BoundaryRole::not_given,
                   choices<BoundaryRole>);
     if (role == BoundaryRole::contact)
       {
-        friction_law = parameters.friction_law;
+        friction_law = find_named(friction_laws(), read.text("Friction law"));
         require_given(id,
                       "Friction law",
                       friction_law != nullptr,
                       names_of(friction_laws()));
-        contact_law = contact_law_of(id, parameters);
+        contact_law =
+          contact_law_of(id, read.text("Contact law"), *friction_law);
         if (solution && is_unilateral())
           refuse("'" + entry(id, "Contact law") + "' is " + contact_law->name +
                  ", for which 'Exact solution/Data' = solution makes no data; "
@@ -298,33 +310,26 @@ namespace Viscoplastic
       }
 
     if (solution)
-      for (const auto &[name, text] :
-           {std::make_pair("Traction", parameters.traction),
-            std::make_pair("Pressure", parameters.pressure),
-            std::make_pair("Normal stress", parameters.normal_stress)})
-        if (is_given(text))
+      for (const char *name : {"Traction", "Pressure", "Normal stress"})
+        if (read.has(name))
           refuse("'" + entry(id, name) +
                  "' is given, but 'Exact solution/Data' = solution makes it; "
                  "leave one of them out.");
-    const EntryReader<dim> read{*this};
-    displacement = read.displacement(parameters.displacement);
-    if (role == BoundaryRole::traction && !solution &&
-        !is_given(parameters.traction) && !is_given(parameters.pressure) &&
-        !is_given(parameters.normal_stiffness) &&
-        !is_given(parameters.tangential_stiffness))
+    displacement = read.displacement();
+    if (role == BoundaryRole::traction && !solution && !read.has("Traction") &&
+        !read.has("Pressure") && !read.has("Normal stiffness") &&
+        !read.has("Tangential stiffness"))
       refuse("'" + entry(id, "Traction") +
              "' is missing, and so are 'Pressure' and stiffnesses of springs; "
              "a boundary without load has the role free.");
-    traction = read.vector("Traction", parameters.traction);
-    pressure = read.nonzero_scalar("Pressure", parameters.pressure);
-    normal_stiffness =
-      read.stiffness("Normal stiffness", parameters.normal_stiffness);
-    tangential_stiffness =
-      read.stiffness("Tangential stiffness", parameters.tangential_stiffness);
+    traction             = read.vector("Traction");
+    pressure             = read.nonzero_scalar("Pressure");
+    normal_stiffness     = read.stiffness("Normal stiffness");
+    tangential_stiffness = read.stiffness("Tangential stiffness");
     for (const LawEntry &one : entries_of(friction_laws()))
-      if (auto datum = read.scalar(one.name, parameters.of_laws.at(one.name)))
+      if (auto datum = read.scalar(one.name))
         friction_data.push_back(std::move(*datum));
-    slip_rate_factor.emplace(parameters.slip_rate_factor,
+    slip_rate_factor.emplace(read.text("Slip rate factor"),
                              entry(id, "Slip rate factor"),
                              "v");
     if (slip_rate_factor->depends_on_time())
@@ -340,34 +345,32 @@ namespace Viscoplastic
       refuse("'" + entry(id, "Slip rate factor") +
              "' is given, for which 'Exact solution/Data' = solution makes no "
              "data; use 'Data' = scene.");
-    normal_stress = read.scalar("Normal stress", parameters.normal_stress);
-    given_gap     = read.nonzero_scalar("Gap", parameters.gap);
+    normal_stress =
+      read.scalar("Normal stress", /* is_needed = */ solution == nullptr);
+    given_gap = read.nonzero_scalar("Gap");
     std::vector<double> numbers;
     for (const LawEntry &one : entries_of(contact_laws()))
-      if (const std::string &text = parameters.of_laws.at(one.name);
-          one.is_number())
+      if (!one.is_number())
         {
-          if (uses(*this, one.name))
-            numbers.push_back(Utilities::string_to_double(text));
+          if (auto k = read.scalar(one.name))
+            {
+              read.refuse_time(k, one.name, "a foundation does", "gap");
+              given_compliance = std::move(k);
+            }
         }
-      else if (auto k = read.scalar(one.name, text))
-        {
-          read.refuse_time(k, one.name, "a foundation does", "gap");
-          given_compliance = std::move(k);
-        }
+      else if (uses(*this, one.name))
+        numbers.push_back(Utilities::string_to_double(read.text(one.name)));
     if (has_normal_compliance())
       pressure_law = contact_law->make(numbers);
-    if (is_given(parameters.foundation_normal))
+    if (read.has("Foundation normal"))
       {
-        normal          = given_direction<dim>(parameters.foundation_normal,
+        normal          = given_direction<dim>(read.text("Foundation normal"),
                                       entry(id, "Foundation normal"));
         normal_is_given = is_unilateral();
       }
     foundation_displacement =
-      read.nonzero_scalar("Foundation displacement",
-                          parameters.foundation_displacement);
-    foundation_motion =
-      read.vector("Foundation motion", parameters.foundation_motion);
+      read.nonzero_scalar("Foundation displacement", /* is_needed = */ true);
+    foundation_motion = read.vector("Foundation motion");
     // Slip is caused only by changes of the foundation motion in time.
     if (foundation_motion && !foundation_motion->depends_on_time())
       foundation_motion.reset();
@@ -381,38 +384,19 @@ namespace Viscoplastic
     const BoundaryParameters &parameters) const
   {
     std::vector<std::string> names;
-    const auto               compare = [&](const std::string &name,
-                             const std::string &text,
-                             const std::string &nothing) {
-      const std::string given = Utilities::trim(text);
-      if (!given.empty() && given != nothing && !uses(*this, name))
-        names.push_back(name);
-    };
-    compare("Displacement", parameters.displacement, "");
-    compare("Traction", parameters.traction, "");
-    compare("Pressure", parameters.pressure, "0");
-    compare("Normal stiffness", parameters.normal_stiffness, "0");
-    compare("Tangential stiffness", parameters.tangential_stiffness, "0");
-    const bool is_contact = role == BoundaryRole::contact;
-    if (!is_contact && parameters.contact_law != nullptr &&
-        parameters.contact_law->kind != ContactLaw::Kind::bilateral)
-      names.emplace_back("Contact law");
-    compare("Against", parameters.against, "");
-    compare("Gap", parameters.gap, "0");
-    compare("Foundation normal", parameters.foundation_normal, "");
-    for (const LawEntry &one : entries_of(contact_laws()))
-      compare(one.name,
-              parameters.of_laws.at(one.name),
-              one.is_number() ? one.default_value : "0");
-    if (!is_contact && parameters.friction_law != nullptr &&
-        parameters.friction_law->name != "none")
-      names.emplace_back("Friction law");
-    for (const LawEntry &one : entries_of(friction_laws()))
-      compare(one.name, parameters.of_laws.at(one.name), "0");
-    compare("Slip rate factor", parameters.slip_rate_factor, "1");
-    compare("Normal stress", parameters.normal_stress, "0");
-    compare("Foundation displacement", parameters.foundation_displacement, "0");
-    compare("Foundation motion", parameters.foundation_motion, "");
+    for (const auto &[name, help, default_value, pattern] : boundary_entries())
+      {
+        const std::string &text = parameters.entries.at(name);
+        // Values that are the default or change nothing are not reported.
+        const std::string nothing =
+          name == "Contact law"                           ? "bilateral" :
+          name == "Friction law"                          ? "none" :
+          name == "Against" || name == "Slip rate factor" ? default_value :
+                                                            "0";
+        if (!Utilities::trim(text).empty() && text != default_value &&
+            text != nothing && !uses(*this, name))
+          names.push_back(name);
+      }
     return names;
   }
 

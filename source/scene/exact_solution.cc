@@ -3,27 +3,12 @@
 #include <viscoplastic_contact/mesh/plane_model.h>
 #include <viscoplastic_contact/scene/exact_solution.h>
 
-
 namespace Viscoplastic
 {
   namespace
   {
     // Truncation and rounding errors of second derivatives are then both 1e-8.
     constexpr double relative_step = 1e-4;
-
-
-
-    /// The one-sided derivative of @p f at t by differences of second order.
-    template <typename Side, typename Function>
-    auto
-    one_sided_rate(const double    t,
-                   const double    step,
-                   const Side      side,
-                   const Function &f)
-    {
-      const double h = side == Side::after ? step : -step;
-      return (4. * f(t + h) - f(t + 2. * h) - 3. * f(t)) / (2. * h);
-    }
   } // namespace
 
 
@@ -118,34 +103,6 @@ namespace Viscoplastic
 
   template <int dim>
   Tensor<1, dim>
-  ExactSolution<dim>::stress_column(const Point<dim>  &x,
-                                    const double       t,
-                                    const unsigned int j) const
-  {
-    Tensor<1, dim> result;
-    if (!has_own_stress())
-      {
-        const SymmetricTensor<2, 3> sigma = stress(x, t);
-        for (unsigned int i = 0; i < dim; ++i)
-          result[i] = sigma[i][j];
-        return result;
-      }
-    const auto components = stress_components<dim>();
-    for (unsigned int c = 0; c < components.size(); ++c)
-      {
-        const auto [row, column] = components[c];
-        if (row == j)
-          result[column] = given_stress->value(x, t, c);
-        else if (column == j)
-          result[row] = given_stress->value(x, t, c);
-      }
-    return result;
-  }
-
-
-
-  template <int dim>
-  Tensor<1, dim>
   ExactSolution<dim>::body_force(const Point<dim> &x, const double t) const
   {
     Tensor<1, dim> result;
@@ -154,10 +111,9 @@ namespace Viscoplastic
         Point<dim> left(x), right(x);
         left[j] -= space_step;
         right[j] += space_step;
-        const Tensor<1, dim> change =
-          stress_column(right, t, j) - stress_column(left, t, j);
+        const SymmetricTensor<2, 3> change = stress(right, t) - stress(left, t);
         for (unsigned int i = 0; i < dim; ++i)
-          result[i] -= change[i] / (right[j] - left[j]);
+          result[i] -= change[i][j] / (right[j] - left[j]);
       }
     if (plane_model == PlaneModel::axisymmetric)
       {
@@ -168,45 +124,6 @@ namespace Viscoplastic
         result[1] -= sigma[0][1] / r;
       }
     return result;
-  }
-
-
-
-  template <int dim>
-  Tensor<1, dim>
-  ExactSolution<dim>::velocity(const Point<dim> &x,
-                               const double      t,
-                               const Side        side) const
-  {
-    return one_sided_rate(t, time_step, side, [&](const double s) {
-      return displacement(x, s);
-    });
-  }
-
-
-
-  template <int dim>
-  SymmetricTensor<2, 3>
-  ExactSolution<dim>::strain_rate(const Point<dim> &x,
-                                  const double      t,
-                                  const Side        side) const
-  {
-    return one_sided_rate(t, time_step, side, [&](const double s) {
-      return strain(x, s);
-    });
-  }
-
-
-
-  template <int dim>
-  SymmetricTensor<2, 3>
-  ExactSolution<dim>::stress_rate(const Point<dim> &x,
-                                  const double      t,
-                                  const Side        side) const
-  {
-    return one_sided_rate(t, time_step, side, [&](const double s) {
-      return stress(x, s);
-    });
   }
 
 

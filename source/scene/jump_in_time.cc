@@ -201,10 +201,10 @@ namespace Viscoplastic
         const std::string entry =
           "Boundary " + std::to_string(id) + "/Foundation motion";
         if ((condition.has_friction() || condition.is_glued()) &&
-            optional_vector<dim>(
-              scene.parameters.boundaries.at(id).foundation_motion,
-              dim,
-              entry) &&
+            optional_vector<dim>(scene.parameters.boundaries.at(id).entries.at(
+                                   "Foundation motion"),
+                                 dim,
+                                 entry) &&
             !slides(condition,
                     places_on_boundary(triangulation, id),
                     scene.schedule))

@@ -63,8 +63,8 @@ namespace Viscoplastic
     {
       for (auto &[id, condition] : scene.boundary)
         {
-          const std::string name =
-            Utilities::trim(scene.parameters.boundaries.at(id).against);
+          const std::string name = Utilities::trim(
+            scene.parameters.boundaries.at(id).entries.at("Against"));
           if (name.empty() || condition.role != BoundaryRole::contact ||
               condition.has_given_stress())
             continue;

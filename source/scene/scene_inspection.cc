@@ -119,10 +119,10 @@ namespace Viscoplastic
               "'Boundary " + std::to_string(id) + "/" + name +
               "' is not used by the role " + name_of(given.role) +
               (condition.role == BoundaryRole::contact ?
-                 (given.contact_law == nullptr ?
+                 (given.entries.at("Contact law") == "not given" ?
                     "" :
-                    " with the contact law " + given.contact_law->name) +
-                   " with the friction law " + given.friction_law->name :
+                    " with the contact law " + condition.contact_law->name) +
+                   " with the friction law " + condition.friction_law->name :
                  "") +
               ".");
         }

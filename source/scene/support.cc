@@ -78,8 +78,8 @@ namespace Viscoplastic
     {
       const std::size_t  colon = text.find(':');
       BoundaryParameters held;
-      held.role         = BoundaryRole::displacement;
-      held.displacement = displacement_of<dim>(
+      held.role                    = BoundaryRole::displacement;
+      held.entries["Displacement"] = displacement_of<dim>(
         colon == std::string::npos ? "" : text.substr(colon + 1), entry, text);
       Support<dim>      result{"", {}, {}, BoundaryCondition<dim>(id, held)};
       const std::string where = text.substr(0, colon);

@@ -4,6 +4,7 @@
 
 #include "refusals.h"
 #include "tensors.h"
+#include <viscoplastic_contact/parameters/entry.h>
 #include <viscoplastic_contact/scene/material.h>
 
 #include <gtest/gtest.h>
@@ -21,9 +22,7 @@ namespace
   {
     ParameterHandler   prm;
     MaterialParameters parameters;
-    prm.enter_subsection("Material 2");
-    parameters.declare(prm, built_in_laws());
-    prm.leave_subsection();
+    declare_section(prm, "Material 2", entries_in(parameters, built_in_laws()));
     prm.parse_input_from_string("subsection Material 2\n" + entries +
                                 "\nend\n");
     return Material<dim>("Material 2", parameters, prm);
@@ -153,9 +152,7 @@ namespace
 
     ParameterHandler   prm;
     MaterialParameters parameters;
-    prm.enter_subsection("Material 7");
-    parameters.declare(prm, built_in_laws());
-    prm.leave_subsection();
+    declare_section(prm, "Material 7", entries_in(parameters, built_in_laws()));
     prm.parse_input_from_string("subsection Material 7\n"
                                 "set Law = perzyna\n"
                                 "subsection perzyna\n"

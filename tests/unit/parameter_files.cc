@@ -31,7 +31,8 @@ namespace
     EXPECT_EQ(parameters->material.law, "elastic");
     EXPECT_EQ(parameters->boundaries.size(), 2u);
     EXPECT_EQ(parameters->boundaries.at(7).role, BoundaryRole::clamped);
-    EXPECT_EQ(parameters->boundaries.at(2).friction_law, nullptr);
+    EXPECT_EQ(parameters->boundaries.at(2).entries.at("Friction law"),
+              "not given");
     EXPECT_EQ(parameters->solver.linear_solver, LinearSolver::automatic);
     EXPECT_FALSE(parameters->initial_state.equilibrate);
   }

@@ -291,8 +291,8 @@ namespace
   {
     BoundaryParameters entries;
     entries.role                      = BoundaryRole::contact;
-    entries.friction_law              = find_named(friction_laws(), "tresca");
-    entries.of_laws["Friction bound"] = "0.5 - x + t";
+    entries.entries["Friction law"]   = "tresca";
+    entries.entries["Friction bound"] = "0.5 - x + t";
     const BoundaryCondition<2> tresca(2, entries);
     EXPECT_TRUE(tresca.is_bilateral());
     EXPECT_TRUE(tresca.has_friction());
@@ -303,16 +303,16 @@ namespace
                    "it must not be negative.");
 
     // The bound is mu |S|: S may have any sign, mu may not.
-    entries.friction_law = find_named(friction_laws(), "coulomb");
-    entries.of_laws["Friction coefficient"] = "0.5 - x";
-    entries.normal_stress                   = "-3";
+    entries.entries["Friction law"]         = "coulomb";
+    entries.entries["Friction coefficient"] = "0.5 - x";
+    entries.entries["Normal stress"]        = "-3";
     const BoundaryCondition<2> coulomb(3, entries);
     EXPECT_FALSE(coulomb.is_bilateral());
     EXPECT_FALSE(coulomb.bound_depends_on_time());
     EXPECT_DOUBLE_EQ(coulomb.bound(Point<2>(0.25, 0.), 1.), 0.75);
     expect_refusal([&] { coulomb.bound(Point<2>(1., 0.), 0.); },
                    "'Boundary 3/Friction coefficient' is -0.5");
-    entries.normal_stress = "3*t";
+    entries.entries["Normal stress"] = "3*t";
     const BoundaryCondition<2> tension(3, entries);
     EXPECT_DOUBLE_EQ(tension.bound(Point<2>(0.25, 0.), 2.), 1.5);
     EXPECT_TRUE(tension.bound_depends_on_time());
@@ -323,14 +323,14 @@ namespace
   TEST(Boundary, ComponentsThatStayFree)
   {
     BoundaryParameters entries;
-    entries.role         = BoundaryRole::displacement;
-    entries.displacement = "free; -0.1*t";
+    entries.role                    = BoundaryRole::displacement;
+    entries.entries["Displacement"] = "free; -0.1*t";
     const BoundaryCondition<2> condition(1, entries);
     EXPECT_FALSE(condition.displacement[0].has_value());
     ASSERT_TRUE(condition.displacement[1].has_value());
     EXPECT_DOUBLE_EQ(condition.displacement[1]->value({}, 2.), -0.2);
     EXPECT_TRUE(condition.constrains());
-    entries.displacement = "0";
+    entries.entries["Displacement"] = "0";
     expect_refusal([&] { BoundaryCondition<2> c(1, entries); },
                    "'Boundary 1/Displacement' needs 2 components separated by "
                    "semicolons");

@@ -264,7 +264,8 @@ namespace
     EXPECT_EQ(parameters.checkpoint.wall_time_limit, 7200.);
     EXPECT_EQ(parameters.output.points, "0.005, 1");
     EXPECT_EQ(parameters.output.directory, "run 2 h"); // no number
-    EXPECT_EQ(parameters.boundaries.at(0).traction, "0.001*(1 - y/(0.02)); 0");
+    EXPECT_EQ(parameters.boundaries.at(0).entries.at("Traction"),
+              "0.001*(1 - y/(0.02)); 0");
     EXPECT_NEAR(std::stod(
                   parameters.values().at("Material/norton/Rate factor")),
                 2e-15,

@@ -4,7 +4,10 @@
 #include <deal.II/base/parameter_handler.h>
 #include <deal.II/base/utilities.h>
 
+#include <viscoplastic_contact/base/table.h>
+
 #include <algorithm>
+#include <memory>
 #include <set>
 #include <string>
 
@@ -164,6 +167,13 @@ namespace Viscoplastic
 
 
 
+  template <>
+  inline constexpr const char *choices<DataTable::Interpolation> =
+    "linear|constant";
+
+  template <>
+  inline constexpr const char *choices<DataTable::Outside> = "refuse|constant";
+
   /// Fields that can be recorded at points, along lines and as integrals.
   /// Fields of the body come first, those of its boundary from `slip' on.
   enum class RecordedField
@@ -243,48 +253,76 @@ namespace Viscoplastic
 
 
 
-  /// Do ParameterHandler::add_parameter() for an enumeration.
+  /// Return the value with this name, which has to exist.
   template <typename Choice>
-  void
-  add_choice(ParameterHandler  &prm,
-             const std::string &entry,
-             Choice            &choice,
-             const std::string &documentation)
+  Choice
+  choice_named(const std::string &name)
   {
-    prm.declare_entry(entry,
-                      name_of(choice),
-                      Patterns::Selection(choices<Choice>),
-                      documentation);
-    prm.add_action(entry, [&choice](const std::string &value) {
-      const auto names = Utilities::split_string_list(choices<Choice>, '|');
-      choice           = static_cast<Choice>(
-        std::find(names.begin(), names.end(), value) - names.begin());
-    });
-  }
-
-
-
-  /// Add an entry with any number of values, or of those in @p allowed,
-  /// separated by commas.
-  template <typename Choice>
-  void
-  add_choices(ParameterHandler  &prm,
-              const std::string &entry,
-              std::set<Choice>  &chosen,
-              const std::string &documentation,
-              const std::string &allowed = choices<Choice>)
-  {
-    prm.declare_entry(entry,
-                      "",
-                      Patterns::MultipleSelection(allowed),
-                      documentation);
-    prm.add_action(entry, [&chosen](const std::string &value) {
-      chosen.clear();
-      const auto names = Utilities::split_string_list(choices<Choice>, '|');
-      for (const std::string &name : Utilities::split_string_list(value))
-        if (!name.empty())
-          chosen.insert(static_cast<Choice>(
-            std::find(names.begin(), names.end(), name) - names.begin()));
-    });
+    const auto names = Utilities::split_string_list(choices<Choice>, '|');
+    return static_cast<Choice>(std::find(names.begin(), names.end(), name) -
+                               names.begin());
   }
 } // namespace Viscoplastic
+
+
+
+/// Make deal.II's ParameterHandler::add_parameter() know enumerations with
+/// names, and sets of fields, separated by commas.
+namespace dealii::Patterns::Tools
+{
+  template <typename Choice>
+  struct Convert<Choice,
+                 std::enable_if_t<Viscoplastic::choices<Choice> != nullptr>>
+  {
+    static std::unique_ptr<PatternBase>
+    to_pattern()
+    {
+      return std::make_unique<Selection>(Viscoplastic::choices<Choice>);
+    }
+
+    static std::string
+    to_string(const Choice &choice, const PatternBase &)
+    {
+      return Viscoplastic::name_of(choice);
+    }
+
+    static Choice
+    to_value(const std::string &name, const PatternBase &)
+    {
+      return Viscoplastic::choice_named<Choice>(name);
+    }
+  };
+
+
+
+  template <>
+  struct Convert<std::set<Viscoplastic::RecordedField>>
+  {
+    using Field = Viscoplastic::RecordedField;
+
+    static std::unique_ptr<PatternBase>
+    to_pattern()
+    {
+      return std::make_unique<MultipleSelection>(Viscoplastic::choices<Field>);
+    }
+
+    static std::string
+    to_string(const std::set<Field> &fields, const PatternBase &)
+    {
+      std::string names;
+      for (const Field field : fields)
+        names += (names.empty() ? "" : ", ") + Viscoplastic::name_of(field);
+      return names;
+    }
+
+    static std::set<Field>
+    to_value(const std::string &names, const PatternBase &)
+    {
+      std::set<Field> fields;
+      for (const std::string &name : Utilities::split_string_list(names))
+        if (!name.empty())
+          fields.insert(Viscoplastic::choice_named<Field>(name));
+      return fields;
+    }
+  };
+} // namespace dealii::Patterns::Tools

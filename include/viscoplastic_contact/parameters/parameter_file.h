@@ -57,6 +57,7 @@ namespace Viscoplastic
     InitialStateParameters                     initial_state;
     ExactSolutionParameters                    exact_solution;
     std::map<unsigned int, BoundaryParameters> boundaries;
+    std::map<unsigned int, TableParameters>    tables;
     TimeParameters                             time;
     StepControlParameters                      step_control;
     SolverParameters                           solver;
@@ -107,11 +108,25 @@ namespace Viscoplastic
     load_shared_libraries(const std::vector<ParameterLine> &lines);
 
     void
-    declare();
+    declare_scene();
+
+    void
+    declare_run();
 
     /// Give the entries their values.
     void
     read(const std::vector<ParameterLine> &lines);
+
+    /// Make the entry `File' of a section absolute, so that the record of the
+    /// run does not depend on the working directory; return it.
+    std::string
+    locate_file(const std::string                &section,
+                const std::vector<ParameterLine> &lines);
+
+    /// Let expressions use the tables. Throws ExcMessage with the line of the
+    /// parameter file, and that of the table, if a table is invalid.
+    void
+    read_tables(const std::vector<ParameterLine> &lines);
 
     /// Throw if `Material' has entries that numbered materials replace.
     void
@@ -126,7 +141,6 @@ namespace Viscoplastic
     /// ExcMessage if entries contradict `Error control/Tolerance'.
     void
     resolve_automatic_choices();
-
 
     /// Where values come from, by path of the entry; see origin_of().
     std::map<std::string, std::string> origins;

@@ -22,6 +22,19 @@ namespace Viscoplastic
     std::string value      = {};
     bool        is_opening = false;
 
+    bool
+    sets_entry() const
+    {
+      return !is_opening && !name.empty();
+    }
+
+    /// The path `Section/Entry' of the entry.
+    std::string
+    path() const
+    {
+      return section + name;
+    }
+
     /// Return the absolute path of a file that the line names, relative to the
     /// directory of the parameter file or to the working directory. Throws
     /// ExcMessage if it is in neither.

@@ -6,6 +6,7 @@
 #include <viscoplastic_contact/parameters/choices.h>
 
 #include <map>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -13,20 +14,16 @@ namespace Viscoplastic
 {
   using namespace dealii;
 
-  struct ContactLaw;
-  struct FrictionLaw;
+  struct Entry;
   struct LawDescription;
 
-  // One struct for each subsection of the parameter file: defaults, the help
-  // text of every entry (in declare()), and the checks that need no mesh.
+  // A struct for each subsection of the parameter file, with the defaults of
+  // its entries; names and help texts are in the .cc files.
 
   /// Names of units; all are empty if the scene declares none.
   struct UnitParameters
   {
     std::string length, time, stress, force;
-
-    void
-    declare(ParameterHandler &prm);
   };
 
   struct GeometryParameters
@@ -43,9 +40,6 @@ namespace Viscoplastic
     unsigned int global_refinements = 0;
     std::string  boundary_refinements;
     double       flatness_tolerance = 1e-4;
-
-    void
-    declare(ParameterHandler &prm);
   };
 
   /// The entries of one material; those of its law are read by the law itself.
@@ -65,10 +59,12 @@ namespace Viscoplastic
     /// Times at which the material is added and removed; empty for the
     /// beginning and the end of the run.
     std::string added_at, removed_at;
-
-    void
-    declare(ParameterHandler &prm, const std::vector<LawDescription> &laws);
   };
+
+  /// The entries of a material, with a subsection for each of the @p laws.
+  std::vector<Entry>
+  entries_in(MaterialParameters                &material,
+             const std::vector<LawDescription> &laws);
 
   /// The discretization of stresses, the same for all materials.
   struct StressParameters
@@ -76,34 +72,22 @@ namespace Viscoplastic
     VolumetricIntegration volumetric_integration =
       VolumetricIntegration::automatic;
     StressHistory stress_history = StressHistory::quadrature_points;
-
-    void
-    declare(ParameterHandler &prm);
   };
 
   struct SupportParameters
   {
     std::string points, edges;
-
-    void
-    declare(ParameterHandler &prm);
   };
 
   struct LoadParameters
   {
     std::string body_force, axial_force, axial_strain;
-
-    void
-    declare(ParameterHandler &prm);
   };
 
   struct TemperatureParameters
   {
     /// T(x,t); empty if the scene has no temperature.
     std::string value, reference, gas_constant;
-
-    void
-    declare(ParameterHandler &prm);
   };
 
   struct InitialStateParameters
@@ -111,9 +95,6 @@ namespace Viscoplastic
     std::string displacement, stress;
     bool        equilibrate        = false;
     bool        reset_displacement = false;
-
-    void
-    declare(ParameterHandler &prm);
   };
 
   /// A known solution, to measure errors or to manufacture a problem.
@@ -122,36 +103,36 @@ namespace Viscoplastic
     std::string displacement, stress;
     DataSource  data = DataSource::scene;
     std::string reference_directory;
-
-    void
-    declare(ParameterHandler &prm);
   };
+
+  /// An entry of a boundary besides name and role.
+  struct BoundaryEntry
+  {
+    std::string                                  name, help, default_value = {};
+    std::shared_ptr<const Patterns::PatternBase> pattern =
+      std::make_shared<Patterns::Anything>();
+  };
+
+  /// All of them, those of contact laws and friction laws included.
+  const std::vector<BoundaryEntry> &
+  boundary_entries();
 
   struct BoundaryParameters
   {
     std::string  name;
     BoundaryRole role = BoundaryRole::not_given;
-    std::string  displacement, traction, pressure;
-    std::string  normal_stiffness, tangential_stiffness;
-    /// Null if not given.
-    const ContactLaw  *contact_law  = nullptr;
-    const FrictionLaw *friction_law = nullptr;
-    /// The values of the entries of contact laws and friction laws, by name.
-    std::map<std::string, std::string> of_laws;
-    std::string                        against, gap, foundation_normal;
-    std::string                        slip_rate_factor = "1";
-    std::string                        normal_stress;
-    std::string                        foundation_displacement = "0";
-    std::string                        foundation_motion;
+    /// The texts of boundary_entries() by their names.
+    std::map<std::string, std::string> entries;
 
     BoundaryParameters();
+  };
 
-    void
-    declare(ParameterHandler &prm);
-
-    /// Declare the entries of the role contact.
-    void
-    declare_contact(ParameterHandler &prm);
+  /// A table whose columns expressions may call; without a file there is none.
+  struct TableParameters
+  {
+    std::string              file;
+    DataTable::Interpolation interpolation = DataTable::Interpolation::linear;
+    DataTable::Outside       outside       = DataTable::Outside::refuse;
   };
 
   struct TimeParameters
@@ -159,9 +140,6 @@ namespace Viscoplastic
     std::string     phases           = "1: 10";
     TimeScheme      scheme           = TimeScheme::automatic;
     StiffnessPolicy stiffness_policy = StiffnessPolicy::refuse;
-
-    void
-    declare(ParameterHandler &prm);
   };
 
   /// The entries for adaptive time steps.
@@ -180,9 +158,6 @@ namespace Viscoplastic
     {
       return tolerance > 0.;
     }
-
-    void
-    declare(ParameterHandler &prm);
   };
 
   struct SolverParameters
@@ -201,9 +176,6 @@ namespace Viscoplastic
     {
       return contact_tolerance > 0. ? contact_tolerance : 1e-8;
     }
-
-    void
-    declare(ParameterHandler &prm);
   };
 
   struct ErrorControlParameters
@@ -223,9 +195,6 @@ namespace Viscoplastic
     {
       return tolerance > 0.;
     }
-
-    void
-    declare(ParameterHandler &prm);
   };
 
   /// The entries of refinement studies, which contrib/study reads.
@@ -238,9 +207,6 @@ namespace Viscoplastic
     std::string  stress_histories;
     std::string  target_errors = "0.1, 0.03, 0.01, 0.003";
     double       budget        = 3600.;
-
-    void
-    declare(ParameterHandler &prm);
   };
 
   struct RefinementParameters
@@ -256,9 +222,6 @@ namespace Viscoplastic
     double             memory_budget       = 0.; // GB; 0: no bound
 
     void
-    declare(ParameterHandler &prm);
-
-    void
     check() const;
   };
 
@@ -269,9 +232,6 @@ namespace Viscoplastic
     double       wall_time_limit    = 0.; // s; 0: none
     std::string  directory;
     unsigned int keep = 2;
-
-    void
-    declare(ParameterHandler &prm);
   };
 
   struct OutputParameters
@@ -285,8 +245,5 @@ namespace Viscoplastic
     bool         lines_every_step = false;
     /// Fields at points and along lines, and optional fields of other output.
     std::set<RecordedField> point_fields, line_fields, additional_fields;
-
-    void
-    declare(ParameterHandler &prm);
   };
 } // namespace Viscoplastic

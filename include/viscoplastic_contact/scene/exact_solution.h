@@ -106,24 +106,37 @@ namespace Viscoplastic
     };
 
     Tensor<1, dim>
-    velocity(const Point<dim> &x, const double t, const Side side) const;
+    velocity(const Point<dim> &x, const double t, const Side side) const
+    {
+      return rate(t, side, [&](const double s) { return displacement(x, s); });
+    }
 
     SymmetricTensor<2, 3>
-    strain_rate(const Point<dim> &x, const double t, const Side side) const;
+    strain_rate(const Point<dim> &x, const double t, const Side side) const
+    {
+      return rate(t, side, [&](const double s) { return strain(x, s); });
+    }
 
     SymmetricTensor<2, 3>
-    stress_rate(const Point<dim> &x, const double t, const Side side) const;
+    stress_rate(const Point<dim> &x, const double t, const Side side) const
+    {
+      return rate(t, side, [&](const double s) { return stress(x, s); });
+    }
 
     /// Throws ExcMessage if rates in time are unbounded at (x, t).
     void
     check_rates(const Point<dim> &x, const double t) const;
 
   private:
-    /// sigma_ij for all i; evaluates only these components of a given stress.
-    Tensor<1, dim>
-    stress_column(const Point<dim>  &x,
-                  const double       t,
-                  const unsigned int j) const;
+    /// The one-sided derivative of a function at t by differences of second
+    /// order.
+    template <typename Function>
+    auto
+    rate(const double t, const Side side, const Function &f) const
+    {
+      const double h = side == Side::after ? time_step : -time_step;
+      return (4. * f(t + h) - f(t + 2. * h) - 3. * f(t)) / (2. * h);
+    }
 
     bool
     is_generalized() const

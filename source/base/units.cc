@@ -286,75 +286,46 @@ namespace Viscoplastic
   std::optional<UnitInText>
   read_unit(const std::string &text, const std::size_t begin)
   {
-    Cursor cursor{text, begin};
-    cursor.skip_blanks();
-    const bool has_blank = cursor.at > begin;
-    double     sign      = 1.;
-    if (cursor.next() == '/')
+    Cursor     cursor{text, begin};
+    UnitInText result{{"", {}, 1.}, begin, ""};
+    for (bool is_first = true;; is_first = false)
       {
-        ++cursor.at;
+        const std::size_t before = cursor.at;
         cursor.skip_blanks();
-        sign = -1.;
-      }
-    else if (!has_blank)
-      return {};
-
-    UnitInText          result{{"", {}, 1.}, begin, ""};
-    bool                is_first = true;
-    std::optional<Unit> group;
-    while (true)
-      {
-        const Unit *unit = group ? &*group : nullptr;
-        if (unit == nullptr)
-          {
-            const std::string name = cursor.word();
-            if (name.empty() || (cursor.is_call() && !is_first))
-              break;
-            unit = find_unit(name);
-            if (unit == nullptr)
-              {
-                // After a number or a unit and a blank, only a unit can follow.
-                if (sign > 0. && !cursor.is_call())
-                  result.unknown_name = name;
-                break;
-              }
-            if (cursor.is_call())
-              break;
-          }
-        const double exponent = sign * cursor.exponent();
-        result.unit.dimension =
-          result.unit.dimension * unit->dimension.power(exponent);
-        result.unit.si *= std::pow(unit->si, exponent);
-        result.end = cursor.at;
-        is_first   = false;
-        group.reset();
-
-        cursor.skip_blanks();
-        const char sign_of_next = cursor.next();
-        if (sign_of_next == '/' || sign_of_next == '*')
+        const char sign     = cursor.next();
+        const bool has_sign = sign == '/' || (sign == '*' && !is_first);
+        if (has_sign)
           {
             ++cursor.at;
             cursor.skip_blanks();
-            group = read_group(cursor);
-            // A word that is no unit belongs to a larger expression, unless it
-            // resembles the name of a unit.
-            Cursor            ahead = cursor;
-            const std::string word  = ahead.word();
-            if (!group && find_unit(word) == nullptr)
-              {
-                if (word.size() > 1 && !ahead.is_call() &&
-                    !nearest_name(word, names_of_units()).empty())
-                  result.unknown_name = word;
-                break;
-              }
-            sign = sign_of_next == '/' ? -1. : 1.;
           }
-        else if (cursor.at > result.end)
-          sign = 1.;
-        else
+        else if (cursor.at == before)
           break;
+        std::optional<Unit> factor;
+        if (has_sign && !is_first)
+          factor = read_group(cursor);
+        if (!factor)
+          {
+            const std::string name = cursor.word();
+            const Unit *const unit = find_unit(name);
+            // After a number or a unit and a blank, only a unit can follow. A
+            // word after a sign that is no unit belongs to a larger expression,
+            // unless it resembles the name of a unit.
+            if (unit == nullptr && !cursor.is_call() &&
+                (!has_sign || (!is_first && name.size() > 1 &&
+                               !nearest_name(name, names_of_units()).empty())))
+              result.unknown_name = name;
+            if (unit == nullptr || cursor.is_call())
+              break;
+            factor = *unit;
+          }
+        const double exponent = (sign == '/' ? -1. : 1.) * cursor.exponent();
+        result.unit.dimension =
+          result.unit.dimension * factor->dimension.power(exponent);
+        result.unit.si *= std::pow(factor->si, exponent);
+        result.end = cursor.at;
       }
-    if (is_first && result.unknown_name.empty())
+    if (result.end == begin && result.unknown_name.empty())
       return {};
     const std::size_t first = text.find_first_not_of(' ', begin);
     result.unit.name        = text.substr(first, result.end - first);

@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+// Boost's JSON parser uses placeholders that boost says are deprecated.
+#define BOOST_BIND_GLOBAL_PLACEHOLDERS
+
 #include <deal.II/base/utilities.h>
 
 #include <viscoplastic_contact/base/version.h>
@@ -6,6 +9,8 @@
 #include <viscoplastic_contact/parameters/parameter_file.h>
 #include <viscoplastic_contact/parameters/parameter_tree.h>
 #include <viscoplastic_contact/parameters/wrong_lines.h>
+
+#include <boost/property_tree/json_parser.hpp>
 
 #include <map>
 #include <sstream>
@@ -130,6 +135,8 @@ namespace Viscoplastic
     result.put("introduction", introduction);
     result.add_child("sections", sections);
     result.add_child("entries", entries);
-    return as_json(result);
+    std::ostringstream out;
+    boost::property_tree::write_json(out, result);
+    return out.str();
   }
 } // namespace Viscoplastic

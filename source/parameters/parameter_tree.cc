@@ -24,16 +24,6 @@ namespace Viscoplastic
 
 
 
-  std::string
-  as_json(const boost::property_tree::ptree &tree)
-  {
-    std::ostringstream json;
-    boost::property_tree::write_json(json, tree);
-    return json.str();
-  }
-
-
-
   bool
   is_entry(const boost::property_tree::ptree &node)
   {

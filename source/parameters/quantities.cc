@@ -97,16 +97,6 @@ namespace Viscoplastic
 
 
 
-    std::optional<double>
-    as_number(const std::string &text)
-    {
-      if (text.empty() || end_of_number(text, 0) != text.size())
-        return {};
-      return std::strtod(text.c_str(), nullptr);
-    }
-
-
-
     /// Return the last value of an entry; its default if no line sets it.
     std::string
     last_value(const std::vector<ParameterLine> &lines,
@@ -131,7 +121,7 @@ namespace Viscoplastic
           const auto        entry =
             declared.get_child_optional(Tree::path_type(path, '/'));
           if (entry && is_entry(*entry))
-            return as_number(last_value(
+            return number_of(last_value(
               lines, path, entry->get<std::string>("default_value")));
         }
       return {};

@@ -126,7 +126,6 @@ namespace Viscoplastic
   allowed_values(const std::string &pattern_description)
   {
     static const std::regex selection("\\[Selection (.*) \\]"),
-      selections("\\[MultipleSelection (.*) \\]"),
       range("\\[(Integer range|Double) (.*)\\.\\.\\.(.*) \\(inclusive\\)\\]"),
       items("\\[List of <(.*)> of length (.*)\\.\\.\\.(.*) \\(inclusive\\)\\]");
     static const std::map<std::string, std::string> others{
@@ -135,9 +134,6 @@ namespace Viscoplastic
       {"[Anything]", "any text"}};
 
     std::smatch part;
-    if (std::regex_match(pattern_description, part, selections))
-      return "names separated by commas, each one of " +
-             enumeration(Utilities::split_string_list(part[1], '|'), 50);
     if (std::regex_match(pattern_description, part, selection))
       {
         std::vector<std::string> values =
@@ -165,9 +161,17 @@ namespace Viscoplastic
                                  "");
       }
     if (std::regex_match(pattern_description, part, items))
-      return (part[2] == part[3] ? "a list of " + part.str(2) + " items" :
-                                   "a list") +
-             " separated by commas, each " + allowed_values(part[1]);
+      {
+        const bool has_any_length =
+          part[2] == "0" &&
+          part[3] == std::to_string(std::numeric_limits<unsigned int>::max());
+        const std::string each = allowed_values(part[1]);
+        if (has_any_length && each.compare(0, 7, "one of ") == 0)
+          return "names separated by commas, each " + each;
+        return (part[2] == part[3] ? "a list of " + part.str(2) + " items" :
+                                     "a list") +
+               " separated by commas, each " + each;
+      }
     const auto other = others.find(pattern_description);
     return other != others.end() ?
              other->second :

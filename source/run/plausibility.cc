@@ -2,7 +2,7 @@
 #include <viscoplastic_contact/base/messages.h>
 #include <viscoplastic_contact/mesh/mesh_size.h>
 #include <viscoplastic_contact/run/plausibility.h>
-#include <viscoplastic_contact/scene/sample_places.h>
+#include <viscoplastic_contact/scene/data_in_time.h>
 
 #include <boost/property_tree/ptree.hpp>
 

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <viscoplastic_contact/base/messages.h>
-#include <viscoplastic_contact/scene/jump_in_time.h>
-#include <viscoplastic_contact/scene/kinks_in_time.h>
-#include <viscoplastic_contact/scene/sample_places.h>
+#include <viscoplastic_contact/scene/data_in_time.h>
 
 namespace Viscoplastic
 {
@@ -20,29 +18,23 @@ namespace Viscoplastic
     constexpr std::array<double, 6> inside{
       {0.081, 0.233, 0.397, 0.514, 0.709, 0.887}};
 
-    struct StepEnds
-    {
-      double start, end;
-    };
-
     /// Return some steps of each phase, its last one included.
-    std::vector<StepEnds>
+    std::vector<TimeStep>
     sample_steps(const TimeSchedule &schedule)
     {
-      const unsigned int n =
+      const unsigned int most =
         std::max(1u, n_steps_sampled / schedule.n_phases());
-      std::vector<StepEnds> steps;
+      std::vector<TimeStep> steps;
+      unsigned int          last = 0; // step of the phases so far
       for (const TimeSchedule::Phase &phase : schedule.phases)
         {
-          const unsigned int stride = (phase.n_steps + n - 1) / n;
-          const auto         time   = [&](const unsigned int i) {
-            return phase.start + (phase.end - phase.start) * i / phase.n_steps;
-          };
-          for (unsigned int i = 0; i < phase.n_steps; i += stride)
-            steps.push_back({time(i), time(i + 1)});
-          if (steps.back().end < phase.end)
-            steps.push_back({time(phase.n_steps - 1), phase.end});
-          steps.back().end = phase.end; // without rounding
+          const unsigned int stride = (phase.n_steps + most - 1) / most,
+                             first  = last + 1;
+          last += phase.n_steps;
+          for (unsigned int n = first; n <= last; n += stride)
+            steps.push_back(schedule.step(n));
+          if (steps.back().n < last)
+            steps.push_back(schedule.step(last));
         }
       return steps;
     }
@@ -77,13 +69,13 @@ namespace Viscoplastic
     double largest = 0., time = 0.;
     try
       {
-        for (const StepEnds &step : sample_steps(schedule))
+        for (const TimeStep &step : sample_steps(schedule))
           {
-            const auto at_start = values_for_run(step.start),
-                       at_end   = values_for_run(step.end);
+            const auto at_start = values_for_run(step.t_old),
+                       at_end   = values_for_run(step.t);
             for (const double share : inside)
               {
-                const double t = step.start + share * (step.end - step.start);
+                const double t      = step.t_old + share * step.k;
                 const auto   values = values_for_run(t);
                 double       beyond = 0.;
                 for (std::size_t i = 0; i < values.size(); ++i)
@@ -127,14 +119,14 @@ namespace Viscoplastic
         return false;
       try
         {
-          for (const StepEnds &step : sample_steps(schedule))
+          for (const TimeStep &step : sample_steps(schedule))
             for (const Point<dim> &x : places)
               {
                 const auto  &w = *condition.foundation_motion;
                 const double size =
-                  (w.vector(x, step.end) - w.vector(x, 0.)).norm();
+                  (w.vector(x, step.t) - w.vector(x, 0.)).norm();
                 // The tolerance allows for rounding of the normal.
-                if (condition.sliding(x, step.end).norm() > 1e-10 * size)
+                if (condition.sliding(x, step.t).norm() > 1e-10 * size)
                   return true;
               }
         }
@@ -184,16 +176,14 @@ namespace Viscoplastic
     const bool looks_into_steps =
       !chooses_steps(scene.parameters) &&
       !(scene.exact_solution && scene.exact_solution->makes_data);
-    for_each_datum_in_time<dim>(
-      scene,
-      triangulation,
-      [&](const Expression<dim> &datum, const std::vector<Point<dim>> &places) {
+    for (const auto &[datum, places] : data_in_time(scene, triangulation))
+      {
         jumps.add(datum.name_of_entry(),
                   find_jump(datum, places, scene.schedule));
         if (looks_into_steps)
           unseen.add(datum.name_of_entry(),
                      find_unseen_change(datum, places, scene.schedule));
-      });
+      }
 
     std::vector<std::string> warnings;
     for (const auto &[id, condition] : scene.boundary)

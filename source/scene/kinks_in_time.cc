@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <viscoplastic_contact/scene/kinks_in_time.h>
-#include <viscoplastic_contact/scene/sample_places.h>
+#include <viscoplastic_contact/scene/data_in_time.h>
 
 #include <array>
 #include <numeric>
@@ -29,9 +28,6 @@ namespace Viscoplastic
     constexpr int n_eighths = 11, first_eighth = -1;
     /// A larger number of kinks is taken for noise.
     constexpr std::size_t most_kinks = 1000;
-
-
-
     /// The least share of the places at which a datum changes that have a kink.
     constexpr double least_places = 0.1;
 
@@ -304,10 +300,8 @@ namespace Viscoplastic
                  const Triangulation<dim> &triangulation)
   {
     KinksOfScene result;
-    for_each_datum_in_time<dim>(
-      scene,
-      triangulation,
-      [&](const Expression<dim> &datum, const std::vector<Point<dim>> &places) {
+    for (const auto &[datum, places] : data_in_time(scene, triangulation))
+      {
         const auto found = find_kinks(datum, places, scene.schedule);
         result.kinks.insert(result.kinks.end(), found.begin(), found.end());
         auto &entries = result.entries;
@@ -315,7 +309,7 @@ namespace Viscoplastic
             std::find(entries.begin(), entries.end(), datum.name_of_entry()) ==
               entries.end())
           entries.push_back(datum.name_of_entry());
-      });
+      }
 
     // Merge kinks of several data at the same time.
     std::vector<Kink> &kinks = result.kinks;

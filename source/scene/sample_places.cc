@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <deal.II/base/quadrature_lib.h>
 
-#include <viscoplastic_contact/scene/sample_places.h>
+#include <viscoplastic_contact/scene/data_in_time.h>
 
 #include <algorithm>
 #include <cmath>
@@ -88,26 +88,28 @@ namespace Viscoplastic
 
 
   template <int dim>
-  void
-  for_each_datum_in_time(
-    const Scene<dim>                                           &scene,
-    const Triangulation<dim>                                   &triangulation,
-    const std::function<void(const Expression<dim> &,
-                             const std::vector<Point<dim>> &)> &visit)
+  std::vector<DatumInTime<dim>>
+  data_in_time(const Scene<dim> &scene, const Triangulation<dim> &triangulation)
   {
+    std::vector<DatumInTime<dim>> result;
+    const auto add = [&](const Expression<dim> &datum, const auto &places_of) {
+      if (datum.depends_on_time())
+        result.push_back({datum, places_of()});
+    };
+    const auto in_body = [&] { return places_in_body(triangulation); };
     for (const auto &[id, condition] : scene.boundary)
       for (const Expression<dim> *datum : condition.data())
-        if (datum->depends_on_time())
-          visit(*datum, places_on_boundary(triangulation, id));
+        add(*datum,
+            [&, id = id] { return places_on_boundary(triangulation, id); });
     for (const auto *datum : {&scene.axial_force, &scene.axial_strain})
-      if (*datum && (*datum)->depends_on_time())
-        visit(**datum, {Point<dim>()});
+      if (*datum)
+        add(**datum, [] { return std::vector<Point<dim>>(1); });
     if (scene.body_force)
       for (unsigned int d = 0; d < dim; ++d)
-        if ((*scene.body_force)[d].depends_on_time())
-          visit((*scene.body_force)[d], places_in_body(triangulation));
-    if (scene.temperature && scene.temperature->value.depends_on_time())
-      visit(scene.temperature->value, places_in_body(triangulation));
+        add((*scene.body_force)[d], in_body);
+    if (scene.temperature)
+      add(scene.temperature->value, in_body);
+    return result;
   }
 
 
@@ -115,5 +117,5 @@ namespace Viscoplastic
   VISCOPLASTIC_INSTANTIATE(places_on_boundary);
   VISCOPLASTIC_INSTANTIATE(places_in_body);
   VISCOPLASTIC_INSTANTIATE(values_at);
-  VISCOPLASTIC_INSTANTIATE(for_each_datum_in_time);
+  VISCOPLASTIC_INSTANTIATE(data_in_time);
 } // namespace Viscoplastic

@@ -5,9 +5,8 @@
 #include <viscoplastic_contact/mesh/mesh_ids.h>
 #include <viscoplastic_contact/mesh/mesh_size.h>
 #include <viscoplastic_contact/mesh/plane_model.h>
-#include <viscoplastic_contact/scene/jump_in_time.h>
+#include <viscoplastic_contact/scene/data_in_time.h>
 #include <viscoplastic_contact/scene/output_check.h>
-#include <viscoplastic_contact/scene/sample_places.h>
 
 #include <algorithm>
 #include <limits>

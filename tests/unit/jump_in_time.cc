@@ -3,8 +3,7 @@
 // Jumps of data in time; kinks, steep ramps and moving loads, which are none;
 // and changes of data within time steps that the ends of steps do not show.
 
-#include <viscoplastic_contact/scene/jump_in_time.h>
-#include <viscoplastic_contact/scene/kinks_in_time.h>
+#include <viscoplastic_contact/scene/data_in_time.h>
 
 #include <gtest/gtest.h>
 

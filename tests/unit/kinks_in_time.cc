@@ -2,7 +2,7 @@
 
 // The search finds all kinks and jumps of data in time and nothing else.
 
-#include <viscoplastic_contact/scene/kinks_in_time.h>
+#include <viscoplastic_contact/scene/data_in_time.h>
 
 #include <gtest/gtest.h>
 

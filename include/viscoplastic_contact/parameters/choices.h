@@ -8,7 +8,6 @@
 
 #include <algorithm>
 #include <memory>
-#include <set>
 #include <string>
 
 namespace Viscoplastic
@@ -266,8 +265,8 @@ namespace Viscoplastic
 
 
 
-/// Make deal.II's ParameterHandler::add_parameter() know enumerations with
-/// names, and sets of fields, separated by commas.
+/// Lets deal.II's ParameterHandler::add_parameter() know enumerations by the
+/// names of their values, and sets of them as names separated by commas.
 namespace dealii::Patterns::Tools
 {
   template <typename Choice>
@@ -290,39 +289,6 @@ namespace dealii::Patterns::Tools
     to_value(const std::string &name, const PatternBase &)
     {
       return Viscoplastic::choice_named<Choice>(name);
-    }
-  };
-
-
-
-  template <>
-  struct Convert<std::set<Viscoplastic::RecordedField>>
-  {
-    using Field = Viscoplastic::RecordedField;
-
-    static std::unique_ptr<PatternBase>
-    to_pattern()
-    {
-      return std::make_unique<MultipleSelection>(Viscoplastic::choices<Field>);
-    }
-
-    static std::string
-    to_string(const std::set<Field> &fields, const PatternBase &)
-    {
-      std::string names;
-      for (const Field field : fields)
-        names += (names.empty() ? "" : ", ") + Viscoplastic::name_of(field);
-      return names;
-    }
-
-    static std::set<Field>
-    to_value(const std::string &names, const PatternBase &)
-    {
-      std::set<Field> fields;
-      for (const std::string &name : Utilities::split_string_list(names))
-        if (!name.empty())
-          fields.insert(Viscoplastic::choice_named<Field>(name));
-      return fields;
     }
   };
 } // namespace dealii::Patterns::Tools

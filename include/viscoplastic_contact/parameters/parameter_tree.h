@@ -19,9 +19,6 @@ namespace Viscoplastic
   boost::property_tree::ptree
   declared_entries(const ParameterHandler &handler);
 
-  std::string
-  as_json(const boost::property_tree::ptree &tree);
-
   bool
   is_entry(const boost::property_tree::ptree &node);
 

@@ -3,7 +3,7 @@
 
 #include <viscoplastic_contact/base/console.h>
 #include <viscoplastic_contact/discretization/discretization.h>
-#include <viscoplastic_contact/scene/kinks_in_time.h>
+#include <viscoplastic_contact/scene/data_in_time.h>
 
 namespace Viscoplastic
 {

@@ -82,10 +82,6 @@ namespace Viscoplastic
     words(const std::string &column) const;
 
     std::map<PlaceNumber, std::string> names;
-
-  private:
-    void
-    add(const PlaceNumber &place, const std::string &name);
   };
 
 

@@ -6,7 +6,7 @@
 #include <viscoplastic_contact/parameters/parameter_file.h>
 
 // The entries on how a scene is computed and what is written; those that
-// describe the scene itself are in parameters.cc.
+// describe the scene itself are in scene_entries.cc.
 
 namespace Viscoplastic
 {
@@ -265,9 +265,9 @@ namespace Viscoplastic
            "-E^-1 G; `principal stresses', the largest first. On Gamma_3: "
            "`normal traction' sigma_nu, negative in compression; `friction "
            "work', what friction has dissipated per area since t = 0.",
-           Patterns::MultipleSelection(
+           Patterns::List(Patterns::Selection(
              "total strain|irreversible strain|creep strain|creep "
-             "rate|principal stresses|normal traction|friction work")}}},
+             "rate|principal stresses|normal traction|friction work"))}}},
 
         {"Checkpoint",
          {{"Every n steps",

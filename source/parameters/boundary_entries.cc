@@ -121,7 +121,8 @@ namespace Viscoplastic
         {"Foundation displacement",
          "d(x,t) of bilateral contact: u_nu = d, nu pointing out of the body, "
          "so that d < 0 presses. In unilateral contact and normal compliance "
-         "it is added to the gap. Unit: length.",
+         "it is added to the gap. Along the face: `Foundation motion'. Unit: "
+         "length.",
          "0"},
         {"Foundation motion",
          "w(x,t): how far the foundation has moved along its face since t = 0, "

@@ -42,7 +42,7 @@ namespace Viscoplastic
     const SymmetricTensor<2, 3> *of_cell     = &state.z[c * n],
                                 *old_of_cell = &old_state.z[c * n];
     result.irreversible_energy =
-      0.5 * stress_space.complementary_product(c, of_cell, of_cell);
+      0.5 * stress_space.complementary_square(c, of_cell);
     if (!flows && !is_heated)
       return result;
     Samples strain, old_strain;

@@ -71,7 +71,7 @@ namespace Viscoplastic
         for (std::size_t c = 0; c < stress_space.n_cells(); ++c)
           {
             const auto *z = &state.z[c * stress_space.n_samples];
-            square += stress_space.complementary_product(c, z, z);
+            square += stress_space.complementary_square(c, z);
           }
         forces.irreversible_energy =
           0.5 * Utilities::MPI::sum(square, space.communicator);

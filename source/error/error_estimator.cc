@@ -144,31 +144,35 @@ namespace Viscoplastic
     estimate.energy_norm        = energy_norm(forces);
     estimate.algebraic          = end.report.error;
     // a(d, d), a(d, v) below, and the square of the change of z.
-    std::vector<double>                products(3, 0.);
+    std::vector<double>       products(3, 0.);
+    const IrreversibleStress &z = end.state.z, &old_z = accepted.state.z;
     std::vector<SymmetricTensor<2, 3>> of_cell(stress_space.n_samples);
-    for (std::size_t i = 0; i < end.state.z.size();)
+    for (std::size_t c = 0, i = 0; i < z.size(); ++c)
       {
-        const std::size_t c = i / of_cell.size();
-        for (auto &change : of_cell)
-          {
-            change = end.state.z[i] - accepted.state.z[i];
-            ++i;
-          }
-        products[2] +=
-          stress_space.complementary_product(c, of_cell.data(), of_cell.data());
+        for (unsigned int s = 0; s < of_cell.size(); ++s, ++i)
+          for (unsigned int e = 0; e < 6; ++e)
+            of_cell[s].begin_raw()[e] =
+              z[i].begin_raw()[e] - old_z[i].begin_raw()[e];
+        products[2] += stress_space.complementary_square(c, of_cell.data());
       }
     // With d = u_n - u_{n-1} and v = du_{n-1}, from a(u, .) of both states:
     // |d/k - v|^2 = a(d, d)/k^2 - 2 a(d, v)/k + a(v, v).
     const double      k        = end.state.k;
     DistributedVector velocity = space.owned_vector();
     space.to_frames(accepted.state.velocity, velocity);
-    const DistributedVector elastic     = forces.elastic(),
-                            old_elastic = old_forces.elastic();
+    const bool has_z = forces.irreversible.size() > 0;
     for (unsigned int i = 0; i < velocity.locally_owned_size(); ++i)
       {
-        const double change = elastic.begin()[i] - old_elastic.begin()[i];
-        products[0] += change * (forces.u.begin()[i] - old_forces.u.begin()[i]);
-        products[1] += change * velocity.begin()[i];
+        // Of a(u, .).
+        const auto at = [i](const DistributedVector &v) {
+          return v.begin()[i];
+        };
+        const double change =
+          has_z ? (at(forces.internal) - at(forces.irreversible)) -
+                    (at(old_forces.internal) - at(old_forces.irreversible)) :
+                  at(forces.internal) - at(old_forces.internal);
+        products[0] += change * (at(forces.u) - at(old_forces.u));
+        products[1] += change * at(velocity);
       }
     Utilities::MPI::sum(products, space.communicator, products);
     estimate.irreversible_change = std::sqrt(products[2]);

@@ -151,13 +151,13 @@ namespace Viscoplastic
 
 
   template <int dim>
-  std::array<SymmetricTensor<2, 3>, LocalCells<dim>::n_points>
+  typename LocalCells<dim>::Strains
   LocalCells<dim>::strains(const LocalCell   &cell,
                            const NodalValues &displacements,
                            double            *dilatations) const
   {
-    const Shape                                &shape = shapes[cell.shape];
-    std::array<SymmetricTensor<2, 3>, n_points> result;
+    const Shape &shape = shapes[cell.shape];
+    Strains      result;
     for (unsigned int q = 0; q < n_points; ++q)
       result[q] = strain(gradient(displacements, shape.gradients[q]),
                          strain_zz(displacements, shape.hoops[q]));
@@ -174,6 +174,19 @@ namespace Viscoplastic
           dilatations[q] = trace(result[q]) - mean;
         result[q] = with_dilatation(result[q], mean);
       }
+    return result;
+  }
+
+
+
+  template <int dim>
+  std::vector<typename LocalCells<dim>::Strains>
+  LocalCells<dim>::strains(const DistributedVector &u) const
+  {
+    std::vector<Strains> result;
+    result.reserve(stress_space.n_cells());
+    for (std::size_t c = 0; c < stress_space.n_cells(); ++c)
+      result.push_back(strains(cells[c], displacements(cells[c], u.begin())));
     return result;
   }
 

@@ -441,8 +441,10 @@ namespace Viscoplastic
 
   template <int dim>
   Vector<double>
-  RecoveryEstimator<dim>::estimate(const DistributedVector &u,
-                                   double                  *deviatoric) const
+  RecoveryEstimator<dim>::estimate(
+    const DistributedVector                              &u,
+    const std::vector<typename LocalCells<dim>::Strains> &strains,
+    double                                               *deviatoric) const
   {
     const Strains       means = mean_strains(u);
     std::vector<double> squares(local.cells.size());
@@ -454,14 +456,25 @@ namespace Viscoplastic
           {
             const Cell &cell    = local.cells[c];
             const auto &weights = local.shapes[cell.shape].weights;
-            const auto  e       = defects(c, strains(c, u));
+            const auto  e       = defects(c, strains[c]);
+            // e : e and (tr e)^2, which tell most without more tensors.
+            double all = 0., of_traces = 0.;
             for (unsigned int q = 0; q < n_points; ++q)
-              squares[c] += weights[q] * (cell.stiffness.stress(e[q]) * e[q]);
-            if (deviatoric != nullptr)
+              {
+                all += weights[q] * (e[q] * e[q]);
+                of_traces +=
+                  weights[q] * Utilities::fixed_power<2>(trace(e[q]));
+              }
+            const Stiffness &stiffness = cell.stiffness;
+            const double     two_mu    = 2. * stiffness.shear_modulus();
+            if (stiffness.is_isotropic())
+              squares[c] = two_mu * all +
+                           (stiffness.bulk_modulus() - two_mu / 3.) * of_traces;
+            else
               for (unsigned int q = 0; q < n_points; ++q)
-                of_deviators +=
-                  weights[q] * cell.stiffness.smallest_deviatoric_eigenvalue() *
-                  (deviator(e[q]) * deviator(e[q]));
+                squares[c] += weights[q] * (stiffness.stress(e[q]) * e[q]);
+            of_deviators += stiffness.smallest_deviatoric_eigenvalue() *
+                            std::max(0., all - of_traces / 3.);
           }
         // Corner singularities of linear laws are recovered well enough.
         if (part.largest_share > 0.5)

@@ -389,16 +389,12 @@ namespace Viscoplastic
     std::vector<double> eta(cells.size()); // squared
     double              square = 0.;
     visit_residuals(fields, [&](const LocalResiduals &r) {
-      const Stiffness &stiffness = cells[r.cell].stiffness;
       if (!r.are_again)
-        square = 0.;
-      for (unsigned int q = 0; !r.are_again && q < n_face_points; ++q)
-        square += r.face.weights[q] * r.values[q] *
-                  complied(stiffness, r.face.normals[q], r.values[q]);
+        square = square_of(r);
       for (unsigned int q = 0; r.is_at_boundary && q < n_face_points; ++q)
         square += r.face.weights[q] * 2. *
                   r.values[n_face_points + q].norm_square() /
-                  stiffness.smallest_deviatoric_eigenvalue();
+                  cells[r.cell].stiffness.smallest_deviatoric_eigenvalue();
       eta[r.cell] += factor(r) * square;
     });
     return local.by_active_index(eta);
@@ -451,6 +447,33 @@ namespace Viscoplastic
         eta[face.cell] += shapes[cell.shape].volume / shape.area / 6. * square;
       }
     return local.by_active_index(eta);
+  }
+
+
+
+  template <int dim>
+  double
+  ResidualEstimator<dim>::square_of(const LocalResiduals &r) const
+  {
+    const Stiffness &stiffness = cells[r.cell].stiffness;
+    double           all = 0., along = 0.; // r^2 and (r nu)^2, or (r, M^-1 r)
+    for (unsigned int q = 0; q < n_face_points; ++q)
+      {
+        const Tensor<1, dim> &value = r.values[q], &normal = r.face.normals[q];
+        if (stiffness.is_isotropic())
+          {
+            all += r.face.weights[q] * value.norm_square();
+            along +=
+              r.face.weights[q] * Utilities::fixed_power<2>(value * normal);
+          }
+        else
+          all += r.face.weights[q] * value * complied(stiffness, normal, value);
+      }
+    if (!stiffness.is_isotropic())
+      return all;
+    const double mu = stiffness.shear_modulus();
+    return (all - along) / mu +
+           along / (stiffness.bulk_modulus() + 4. / 3. * mu);
   }
 
 

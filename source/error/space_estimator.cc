@@ -103,9 +103,11 @@ namespace Viscoplastic
     /// Collective.
     template <int dim>
     double
-    cell_mean_defect(const LocalCells<dim> &cells,
-                     const FlowLaws<dim>   &laws,
-                     const State<dim>      &state)
+    cell_mean_defect(
+      const LocalCells<dim>                                &cells,
+      const std::vector<typename LocalCells<dim>::Strains> &strains,
+      const FlowLaws<dim>                                  &laws,
+      const State<dim>                                     &state)
     {
       const StressSpace<dim> &stress_space = laws.stress_space;
       const MPI_Comm          communicator = stress_space.space.communicator;
@@ -121,14 +123,12 @@ namespace Viscoplastic
             const ViscoplasticLaw *law = now.law(c);
             if (law == nullptr)
               continue;
-            const auto      &cell      = cells.cells[c];
-            const auto      &weights   = cells.shapes[cell.shape].weights;
-            const Stiffness &stiffness = stress_space.moduli(c);
-            const auto       strains =
-              cells.strains(cell, cells.displacements(cell, state.u.begin()));
+            const auto           &cell      = cells.cells[c];
+            const auto           &weights   = cells.shapes[cell.shape].weights;
+            const Stiffness      &stiffness = stress_space.moduli(c);
             SymmetricTensor<2, 3> mean;
-            for (unsigned int q = 0; q < strains.size(); ++q)
-              mean += strains[q] * (weights[q] / stress_space.volume(c));
+            for (unsigned int q = 0; q < weights.size(); ++q)
+              mean += strains[c][q] * (weights[q] / stress_space.volume(c));
             // In most bodies that of linear laws is the same in all cells.
             if (law != last_law || &stiffness != last_stiffness ||
                 !law->has_constant_tangents() || now.varies_in_space(c))
@@ -143,9 +143,9 @@ namespace Viscoplastic
                 last_law       = law;
                 last_stiffness = &stiffness;
               }
-            for (unsigned int q = 0; q < strains.size(); ++q)
+            for (unsigned int q = 0; q < weights.size(); ++q)
               square += weights[q] * stiffness.complementary_square(
-                                       rate_of_strain * (strains[q] - mean));
+                                       rate_of_strain * (strains[c][q] - mean));
           }
       });
       return std::sqrt(Utilities::MPI::sum(square, communicator));
@@ -167,16 +167,19 @@ namespace Viscoplastic
       return result;
     const FieldsOfState of_state(d, state, forces);
     Vector<double> squared = residual_estimator->estimate(of_state.fields(0.));
+    const auto     strains = cells->strains(state.u);
     double         of_deviators = 0.;
     const Vector<double> recovery =
-      recovery_estimator->estimate(state.u, locks ? &of_deviators : nullptr);
+      recovery_estimator->estimate(state.u,
+                                   strains,
+                                   locks ? &of_deviators : nullptr);
     for (unsigned int i = 0; i < squared.size(); ++i)
       squared[i] = std::max(squared[i], recovery[i]);
     const auto &triangulation = d.space.dof_handler.get_triangulation();
     if (locks)
       {
         const VolumetricLocking locking =
-          volumetric_locking(*cells, d.laws, state, of_deviators);
+          volumetric_locking(*cells, strains, d.laws, state, of_deviators);
         squared += locking.squared_error;
         result.rate_defect = locking.rate;
       }
@@ -188,7 +191,7 @@ namespace Viscoplastic
       }
     result.total = total_estimate(squared, triangulation);
     if (d.scene().has_viscosity() && d.stress_space.n_samples == 1)
-      result.rate_defect = cell_mean_defect(*cells, d.laws, state);
+      result.rate_defect = cell_mean_defect(*cells, strains, d.laws, state);
     if (refines_by_residual)
       result.squared_indicators = std::move(squared);
     return result;
@@ -233,7 +236,8 @@ namespace Viscoplastic
                             const State<dim>       &state)
   {
     const LocalCells<dim> cells(stress_space);
-    return RecoveryEstimator<dim>(cells).estimate(state.u);
+    return RecoveryEstimator<dim>(cells).estimate(state.u,
+                                                  cells.strains(state.u));
   }
 
 

@@ -20,7 +20,10 @@ namespace Viscoplastic
           distance += Utilities::fixed_power<2>(value[i] - 0.5 * (a[i] + b[i]));
           diameter += Utilities::fixed_power<2>(a[i] - b[i]);
         }
-      return std::max(0., std::sqrt(distance) - 0.5 * std::sqrt(diameter));
+      // Most are in the ball, which roots need not tell.
+      return distance <= 0.25 * diameter ?
+               0. :
+               std::sqrt(distance) - 0.5 * std::sqrt(diameter);
     }
 
 
@@ -105,9 +108,7 @@ namespace Viscoplastic
               if (!state.z.empty())
                 strains[s] += state.z[c * n + s];
             }
-          square += stress_space.complementary_product(c,
-                                                       strains.data(),
-                                                       strains.data());
+          square += stress_space.complementary_square(c, strains.data());
         }
       return std::sqrt(
         Utilities::MPI::sum(square, stress_space.space.communicator));

@@ -29,10 +29,12 @@ namespace Viscoplastic
 
   template <int dim>
   VolumetricLocking
-  volumetric_locking(const LocalCells<dim> &cells,
-                     const FlowLaws<dim>   &laws,
-                     const State<dim>      &state,
-                     const double           defect)
+  volumetric_locking(
+    const LocalCells<dim>                                &cells,
+    const std::vector<typename LocalCells<dim>::Strains> &strains_of_cells,
+    const FlowLaws<dim>                                  &laws,
+    const State<dim>                                     &state,
+    const double                                          defect)
   {
     const StressSpace<dim> &stress_space = laws.stress_space;
     const MPI_Comm          communicator = stress_space.space.communicator;
@@ -51,9 +53,8 @@ namespace Viscoplastic
           const double     two_mu = stiffness.smallest_deviatoric_eigenvalue(),
                        bulk       = stiffness.bulk_modulus();
           const auto &weights     = cells.shapes[cell.shape].weights;
-          const auto  strains =
-            cells.strains(cell, cells.displacements(cell, state.u.begin()));
-          double mean_trace = 0., mean_z = 0.;
+          const auto &strains     = strains_of_cells[c];
+          double      mean_trace = 0., mean_z = 0.;
           for (unsigned int q = 0; q < strains.size(); ++q)
             {
               mean_trace += weights[q] * trace(strains[q]);
@@ -70,10 +71,12 @@ namespace Viscoplastic
           unsigned int at      = 0;
           for (unsigned int q = 0; q < strains.size(); ++q)
             {
-              const double excess = trace(strains[q]) - mean_trace;
-              deviators_square += weights[q] * two_mu * deviator(strains[q]) *
-                                  deviator(strains[q]);
-              double pressure = bulk * excess;
+              const double dilatation = trace(strains[q]);
+              deviators_square += weights[q] * two_mu *
+                                  std::max(0.,
+                                           strains[q] * strains[q] -
+                                             dilatation * dilatation / 3.);
+              double pressure = bulk * (dilatation - mean_trace);
               if (at_points && !state.z.empty())
                 pressure +=
                   (trace(state.z[c * stress_space.n_samples + q]) - mean_z) /

@@ -181,14 +181,13 @@ namespace Viscoplastic
 
 
   double
-  Stiffness::anisotropic_product(const unsigned int           n,
-                                 const double                *weights,
-                                 const SymmetricTensor<2, 3> *a,
-                                 const SymmetricTensor<2, 3> *b) const
+  Stiffness::anisotropic_square(const unsigned int           n,
+                                const double                *weights,
+                                const SymmetricTensor<2, 3> *stress) const
   {
-    double products = 0.;
+    double squares = 0.;
     for (unsigned int i = 0; i < n; ++i)
-      products += weights[i] * (anisotropic_strain(a[i]) * b[i]);
-    return products;
+      squares += weights[i] * (anisotropic_strain(stress[i]) * stress[i]);
+    return squares;
   }
 } // namespace Viscoplastic

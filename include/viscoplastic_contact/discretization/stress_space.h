@@ -132,14 +132,13 @@ namespace Viscoplastic
       return result;
     }
 
-    /// Return int E^-1 a : b over a cell, from its samples.
+    /// Return int E^-1 stress : stress over a cell, from its samples.
     DEAL_II_ALWAYS_INLINE double
-    complementary_product(const std::size_t            cell,
-                          const SymmetricTensor<2, 3> *a,
-                          const SymmetricTensor<2, 3> *b) const
+    complementary_square(const std::size_t            cell,
+                         const SymmetricTensor<2, 3> *stress) const
     {
-      return moduli(cell).complementary_product(
-        n_samples, &weights[space.shapes[cell] * n_samples], a, b);
+      return moduli(cell).complementary_square(
+        n_samples, &weights[space.shapes[cell] * n_samples], stress);
     }
 
     /// Return cell means of sigma = E eps(u) + z; @p z may be empty.

@@ -52,7 +52,8 @@ namespace Viscoplastic
       Tensor<2, dim> result;
       for (unsigned int v = 0; v < n_vertices; ++v)
         for (unsigned int i = 0; i < dim; ++i)
-          result[i] += values[v][i] * shape_gradients[v];
+          for (unsigned int j = 0; j < dim; ++j)
+            result[i][j] += values[v][i] * shape_gradients[v][j];
       return result;
     }
 
@@ -129,14 +130,21 @@ namespace Viscoplastic
     SymmetricTensor<2, 3>
     mean_strain(const LocalCell &cell, const NodalValues &displacements) const;
 
+    /// The strains at the points of a cell.
+    using Strains = std::array<SymmetricTensor<2, 3>, n_points>;
+
     /// Return the strains of the elastic form at the points of a cell: those of
     /// u_h, under mean dilatation with their mean volumetric part. Set @p
     /// dilatations, if given, to the deviation of div u_h from its mean under
     /// mean dilatation, otherwise to zero.
-    std::array<SymmetricTensor<2, 3>, n_points>
+    Strains
     strains(const LocalCell   &cell,
             const NodalValues &displacements,
             double            *dilatations = nullptr) const;
+
+    /// Return those of the owned cells; @p u with ghosts, Cartesian.
+    std::vector<Strains>
+    strains(const DistributedVector &u) const;
 
     /// Return cell means of z in owned cells and ghosts, stored in @p means
     /// unless z itself holds them; null without z. Collective.

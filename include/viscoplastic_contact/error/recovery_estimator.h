@@ -82,10 +82,13 @@ namespace Viscoplastic
     explicit RecoveryEstimator(const LocalCells<dim> &cells);
 
     /// Return eta_K^2 by active cell, zero in cells of other ranks; @p u with
-    /// ghosts, Cartesian. Set @p deviatoric, if given, to the sum for strain
-    /// deviators alone, without singular points. Collective.
+    /// ghosts, Cartesian, and @p strains of the owned cells. Set @p deviatoric,
+    /// if given, to the sum for strain deviators alone, without singular
+    /// points. Collective.
     Vector<double>
-    estimate(const DistributedVector &u, double *deviatoric = nullptr) const;
+    estimate(const DistributedVector                              &u,
+             const std::vector<typename LocalCells<dim>::Strains> &strains,
+             double *deviatoric = nullptr) const;
 
     /// Return the signed products a(e_u, e_w) by active cell, in the form of
     /// the tangents C, of the strain errors of a displacement and a dual

@@ -35,11 +35,13 @@ namespace Viscoplastic
   /// relative to their size, from recovered strains (@p defect: the squared
   /// energy of their deviators' errors). The rate is that of deviators s of the
   /// size of p, G'(sigma) s per unit of time, with the tangents at the largest
-  /// p in the cell. Collective.
+  /// p in the cell. @p strains: those of the owned cells. Collective.
   template <int dim>
   VolumetricLocking
-  volumetric_locking(const LocalCells<dim> &cells,
-                     const FlowLaws<dim>   &laws,
-                     const State<dim>      &state,
-                     const double           defect);
+  volumetric_locking(
+    const LocalCells<dim>                                &cells,
+    const std::vector<typename LocalCells<dim>::Strains> &strains,
+    const FlowLaws<dim>                                  &laws,
+    const State<dim>                                     &state,
+    const double                                          defect);
 } // namespace Viscoplastic

@@ -71,24 +71,16 @@ namespace Viscoplastic
     SymmetricTensor<2, 3>
     strain(const SymmetricTensor<2, 3> &stress) const;
 
-    /// E^-1 a : b.
-    double
-    complementary_product(const SymmetricTensor<2, 3> &a,
-                          const SymmetricTensor<2, 3> &b) const;
-
-    /// Return the sum of weights[i] (E^-1 a[i] : b[i]) over @p n points.
-    double
-    complementary_product(const unsigned int           n,
-                          const double                *weights,
-                          const SymmetricTensor<2, 3> *a,
-                          const SymmetricTensor<2, 3> *b) const;
-
     /// E^-1 stress : stress.
     double
-    complementary_square(const SymmetricTensor<2, 3> &stress) const
-    {
-      return complementary_product(stress, stress);
-    }
+    complementary_square(const SymmetricTensor<2, 3> &stress) const;
+
+    /// Return the sum of weights[i] (E^-1 stress[i] : stress[i]) over @p n
+    /// points.
+    double
+    complementary_square(const unsigned int           n,
+                         const double                *weights,
+                         const SymmetricTensor<2, 3> *stress) const;
 
     /// The shear modulus mu, in the unit of stress; Voigt's average if
     /// anisotropic.
@@ -141,10 +133,9 @@ namespace Viscoplastic
     SymmetricTensor<2, 3>
     anisotropic_strain(const SymmetricTensor<2, 3> &stress) const;
     double
-    anisotropic_product(const unsigned int           n,
-                        const double                *weights,
-                        const SymmetricTensor<2, 3> *a,
-                        const SymmetricTensor<2, 3> *b) const;
+    anisotropic_square(const unsigned int           n,
+                       const double                *weights,
+                       const SymmetricTensor<2, 3> *stress) const;
 
     double                             mu;
     double                             bulk;
@@ -228,37 +219,36 @@ namespace Viscoplastic
 
 
   DEAL_II_ALWAYS_INLINE inline double
-  Stiffness::complementary_product(const SymmetricTensor<2, 3> &a,
-                                   const SymmetricTensor<2, 3> &b) const
+  Stiffness::complementary_square(const SymmetricTensor<2, 3> &stress) const
   {
     if (anisotropic_data)
-      return anisotropic_strain(a) * b;
-    const double pressures = trace(a) * trace(b) / 9.;
-    return (a * b - 3. * pressures) / (2. * mu) + pressures / bulk;
+      return anisotropic_strain(stress) * stress;
+    const double pressure = trace(stress) * trace(stress) / 9.; // squared
+    return (stress * stress - 3. * pressure) / (2. * mu) + pressure / bulk;
   }
 
 
 
   DEAL_II_ALWAYS_INLINE inline double
-  Stiffness::complementary_product(const unsigned int           n,
-                                   const double                *weights,
-                                   const SymmetricTensor<2, 3> *a,
-                                   const SymmetricTensor<2, 3> *b) const
+  Stiffness::complementary_square(const unsigned int           n,
+                                  const double                *weights,
+                                  const SymmetricTensor<2, 3> *stress) const
   {
     if (anisotropic_data)
-      return anisotropic_product(n, weights, a, b);
-    double products = 0., pressures = 0.;
+      return anisotropic_square(n, weights, stress);
+    double squares = 0., pressures = 0.;
     for (unsigned int i = 0; i < n; ++i)
       {
         // By components, of which the compiler makes half as many instructions
         // as of the operators.
-        const double *x = a[i].begin_raw(), *y = b[i].begin_raw();
-        const double  shear = x[3] * y[3] + x[4] * y[4] + x[5] * y[5];
-        products +=
-          weights[i] * (2. * shear + x[0] * y[0] + x[1] * y[1] + x[2] * y[2]);
-        pressures += weights[i] * ((x[0] + x[1] + x[2]) * (y[0] + y[1] + y[2]));
+        const double *x       = stress[i].begin_raw();
+        const double  shear   = x[3] * x[3] + x[4] * x[4] + x[5] * x[5],
+                     pressure = x[0] + x[1] + x[2];
+        squares +=
+          weights[i] * (2. * shear + x[0] * x[0] + x[1] * x[1] + x[2] * x[2]);
+        pressures += weights[i] * (pressure * pressure);
       }
-    return (products - pressures / 3.) / (2. * mu) + pressures / (9. * bulk);
+    return (squares - pressures / 3.) / (2. * mu) + pressures / (9. * bulk);
   }
 
 

@@ -112,9 +112,12 @@ namespace Viscoplastic
       const StressSpace<dim> &stress_space = laws.stress_space;
       const MPI_Comm          communicator = stress_space.space.communicator;
       Assert(stress_space.n_samples == 1, ExcInternalError());
-      const auto             now    = laws.at(state.t, state.history);
-      double                 square = 0.;
+      const auto now    = laws.at(state.t, state.history);
+      double     square = 0.;
+      // d by strains; if d is a multiple of their deviators, its square
+      // instead.
       SymmetricTensor<4, 3>  rate_of_strain;
+      double                 of_deviators   = 0.;
       const ViscoplasticLaw *last_law       = nullptr;
       const Stiffness       *last_stiffness = nullptr;
       fail_together(communicator, [&] {
@@ -140,15 +143,27 @@ namespace Viscoplastic
                                 now.point(c, 0));
                 rate_of_strain =
                   tangents.stress * stiffness.tensor() + tangents.strain;
+                of_deviators = 0.;
+                if (law->has_constant_tangents() && stiffness.is_isotropic() &&
+                    law->radial_flow(0., now.point(c, 0)))
+                  of_deviators =
+                    2. * Utilities::fixed_power<2>(rate_of_strain[0][1][0][1]) /
+                    stiffness.shear_modulus();
                 last_law       = law;
                 last_stiffness = &stiffness;
               }
             for (unsigned int q = 0; q < weights.size(); ++q)
-              square += weights[q] * stiffness.complementary_square(
-                                       rate_of_strain * (strains[c][q] - mean));
+              {
+                const SymmetricTensor<2, 3> e = strains[c][q] - mean;
+                square +=
+                  weights[q] *
+                  (of_deviators > 0. ?
+                     of_deviators * (e * e - trace(e) * trace(e) / 3.) :
+                     stiffness.complementary_square(rate_of_strain * e));
+              }
           }
       });
-      return std::sqrt(Utilities::MPI::sum(square, communicator));
+      return std::sqrt(std::max(0., Utilities::MPI::sum(square, communicator)));
     }
   } // namespace
 

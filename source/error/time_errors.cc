@@ -242,23 +242,28 @@ namespace Viscoplastic
       void
       add_plain(const unsigned int s, const std::size_t i)
       {
-        const double *rate        = end.rate->rate[i].begin_raw(),
-                     *old_rate    = accepted_rate.rate[i].begin_raw();
-        const float *before       = accepted.time_error[i].begin_raw();
-        const double factor       = defect.first * k,
+        const double *const        rate     = end.rate->rate[i].begin_raw(),
+                            *const old_rate = accepted_rate.rate[i].begin_raw();
+        const float *const         before = accepted.time_error[i].begin_raw();
+        double *const step                = steps[s].begin_raw(), *const total =
+                                                     totals[s].begin_raw();
+        float *const after  = state.time_error[i].begin_raw();
+        const double factor = defect.first * k, unit = accepted.time_error_unit,
                      inverse_unit = 1. / state.time_error_unit; // exact
         for (unsigned int e = 0; e < 6; ++e)
           {
-            const double change = rate[e] - old_rate[e], step = factor * change,
-                         total = accepted.time_error_unit * before[e] + step;
-            steps[s].begin_raw()[e]            = step;
-            totals[s].begin_raw()[e]           = total;
-            state.time_error[i].begin_raw()[e] = total * inverse_unit;
-            if (is_second)
-              state.rate_slope[i].begin_raw()[e] = change / k;
-            if (carries)
-              state.carried_error[i].begin_raw()[e] += step;
+            const double of_step = factor * (rate[e] - old_rate[e]),
+                         of_all  = unit * before[e] + of_step;
+            step[e]              = of_step;
+            total[e]             = of_all;
+            after[e]             = of_all * inverse_unit;
           }
+        if (is_second)
+          for (unsigned int e = 0; e < 6; ++e)
+            state.rate_slope[i].begin_raw()[e] = (rate[e] - old_rate[e]) / k;
+        if (carries)
+          for (unsigned int e = 0; e < 6; ++e)
+            state.carried_error[i].begin_raw()[e] += step[e];
       }
 
       void
@@ -366,7 +371,7 @@ namespace Viscoplastic
         if (is_second)
           slopes[i] = change / k;
         // There is no second derivative before the second step.
-        if (is_second && has_slope)
+        if (has_predictor && has_slope)
           step += defect.second * k * k * k * 2. / (k + accepted.k) *
                   (slopes[i] - old_slopes[i]);
         return step;

@@ -231,8 +231,9 @@ namespace Viscoplastic
         needs_stress =
           law &&
           ((fades && (of_loads > 0. || decay.asks_for_stress)) || remembers);
-        is_plain = !remembers && !(fades && law) && !(onset > 0.) &&
-                   !decay.growth && !has_predictor && half_way.empty();
+        is_plain = !remembers && !(fades && law) &&
+                   !(onset > 0. && is_second) && !decay.growth &&
+                   !has_predictor && half_way.empty();
         if (needs_stress)
           stress_space.strains(c, state.u.begin(), strains.data());
       }

@@ -120,8 +120,9 @@ namespace Viscoplastic
               }
             const ErrorRelaxation &relaxation =
               decay.relaxation_at(i, stress, strain, point);
-            SymmetricTensor<2, 3> &error      = state.carried_error[i];
-            const auto             add_square = [&](const unsigned int           sum,
+            SymmetricTensor<2, 3>      &error = state.carried_error[i];
+            const SymmetricTensor<2, 3> moves = state.time_error_at(i);
+            const auto                  add_square = [&](const unsigned int           sum,
                                         const SymmetricTensor<2, 3> &value) {
               sums[sum] +=
                 space.weight(c, s) * stiffness.complementary_square(value);
@@ -130,7 +131,6 @@ namespace Viscoplastic
               add_square(0, relaxation * (error - old.carried_error[i]));
             if (rests)
               {
-                const SymmetricTensor<2, 3> moves = state.time_error_at(i);
                 add_square(1, moves);
                 add_square(2, relaxation * moves);
                 if (decay.growth)

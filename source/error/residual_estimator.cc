@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <deal.II/distributed/tria_base.h>
 
+#include "acoustic_tensor.h"
 #include <viscoplastic_contact/contact/normal_compliance.h>
 #include <viscoplastic_contact/error/residual_estimator.h>
 
@@ -390,7 +391,10 @@ namespace Viscoplastic
     double              square = 0.;
     visit_residuals(fields, [&](const LocalResiduals &r) {
       if (!r.are_again)
-        square = square_of(r);
+        square = acoustic_square<dim>(cells[r.cell].stiffness,
+                                      r.face.normals,
+                                      r.face.weights,
+                                      r.values);
       for (unsigned int q = 0; r.is_at_boundary && q < n_face_points; ++q)
         square += r.face.weights[q] * 2. *
                   r.values[n_face_points + q].norm_square() /
@@ -452,61 +456,6 @@ namespace Viscoplastic
 
 
   template <int dim>
-  double
-  ResidualEstimator<dim>::square_of(const LocalResiduals &r) const
-  {
-    const Stiffness &stiffness = cells[r.cell].stiffness;
-    double           all = 0., along = 0.; // r^2 and (r nu)^2, or (r, M^-1 r)
-    for (unsigned int q = 0; q < n_face_points; ++q)
-      {
-        const Tensor<1, dim> &value = r.values[q], &normal = r.face.normals[q];
-        if (stiffness.is_isotropic())
-          {
-            all += r.face.weights[q] * value.norm_square();
-            along +=
-              r.face.weights[q] * Utilities::fixed_power<2>(value * normal);
-          }
-        else
-          all += r.face.weights[q] * value * complied(stiffness, normal, value);
-      }
-    if (!stiffness.is_isotropic())
-      return all;
-    const double mu = stiffness.shear_modulus();
-    return (all - along) / mu +
-           along / (stiffness.bulk_modulus() + 4. / 3. * mu);
-  }
-
-
-
-  template <int dim>
-  Tensor<1, dim>
-  ResidualEstimator<dim>::complied(const Stiffness      &stiffness,
-                                   const Tensor<1, dim> &normal,
-                                   const Tensor<1, dim> &r) const
-  {
-    if (stiffness.is_isotropic())
-      {
-        const double mu     = stiffness.shear_modulus(),
-                     across = stiffness.bulk_modulus() + 4. / 3. * mu;
-        return r / mu + (1. / across - 1. / mu) * (r * normal) * normal;
-      }
-    Tensor<2, dim> acoustic;
-    for (unsigned int k = 0; k < dim; ++k)
-      {
-        SymmetricTensor<2, 3> strain;
-        for (unsigned int j = 0; j < dim; ++j)
-          strain[k][j] += (j == k ? 1. : 0.5) * normal[j];
-        const Tensor<1, dim> traction =
-          in_plane(stiffness.stress(strain), normal);
-        for (unsigned int i = 0; i < dim; ++i)
-          acoustic[i][k] = traction[i];
-      }
-    return invert(acoustic) * r;
-  }
-
-
-
-  template <int dim>
   typename ResidualEstimator<dim>::OfDual
   ResidualEstimator<dim>::of_dual(const Fields &dual) const
   {
@@ -517,9 +466,10 @@ namespace Viscoplastic
       auto        &weighted = result.weighted.emplace_back();
       for (unsigned int q = 0; q < n_face_points; ++q)
         {
-          weighted[q] =
-            here * r.face.weights[q] *
-            complied(cells[r.cell].stiffness, r.face.normals[q], r.values[q]);
+          weighted[q] = here * r.face.weights[q] *
+                        acoustic_compliance(cells[r.cell].stiffness,
+                                            r.face.normals[q],
+                                            r.values[q]);
           squares[r.cell] += weighted[q] * r.values[q];
         }
     });

@@ -321,16 +321,6 @@ namespace Viscoplastic
     void
     visit_residuals(const Fields &fields, const Visitor &visit) const;
 
-    /// Return int (r, M^-1 r) over a face.
-    double
-    square_of(const LocalResiduals &r) const;
-
-    /// Return M^-1 r, with the acoustic tensor M of @p normal.
-    Tensor<1, dim>
-    complied(const Stiffness      &stiffness,
-             const Tensor<1, dim> &normal,
-             const Tensor<1, dim> &r) const;
-
     const LocalCells<dim>        &local;
     const StressSpace<dim>       &stress_space;
     const std::vector<Shape>     &shapes;

@@ -149,7 +149,8 @@ namespace Viscoplastic
                                         "statistics.csv",
                                       parameters.units,
                                       dim,
-                                      n));
+                                      n,
+                                      /* least_rows = */ n + 1));
     });
     output.emplace(run.scene, communicator);
     output->resume(archive.data.output_times);

@@ -19,6 +19,15 @@ namespace Viscoplastic
       Utilities::MPI::max<unsigned int>(side_points.size(), communicator) > 0;
     any_held_nodes =
       Utilities::MPI::max<unsigned int>(held_nodes.size(), communicator) > 0;
+    bool varies_in_time = false;
+    for (const auto &[id, condition] : discretization.space.scene.boundary)
+      if (condition.has_friction() && condition.friction_depends_on_position())
+        {
+          any_varying_bounds = true;
+          varies_in_time |= condition.friction_depends_on_time();
+        }
+    if (any_varying_bounds && !varies_in_time)
+      constant_changes = changes_of_bounds(0.);
   }
 
 

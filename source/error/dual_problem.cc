@@ -400,6 +400,28 @@ namespace Viscoplastic
 
 
   template <int dim>
+  std::vector<double>
+  DualProblem<dim>::change_by_bounds(const ContactState      &contact,
+                                     const DualSolution<dim> &dual,
+                                     const double             slip_steps) const
+  {
+    const ContactFace<dim> &face     = *discretization.face;
+    DistributedVector       relative = dual.w;
+    if (quantity.kind == QuantityOfInterest::Kind::friction_force)
+      relative -= prescribed();
+    const std::vector<Tensor<1, 2>> of_w = face.slips(relative);
+    std::vector<double>             result(contact.n_points());
+    for (const unsigned int p : face.layout().friction_points())
+      if (const double slip = contact.slip[p].norm();
+          !contact.sticks[p] && slip > 0.)
+        result[p] = (quantity.is_sum() ? slip_steps * slip : 0.) -
+                    contact.slip[p] * of_w[p] / slip;
+    return result;
+  }
+
+
+
+  template <int dim>
   DistributedVector
   DualProblem<dim>::density(const Vector<double> &force) const
   {

@@ -136,7 +136,8 @@ namespace Viscoplastic
     const auto    &triangulation = d.space.dof_handler.get_triangulation();
     Vector<double> sides =
       boundary_defects.missing_sides(state, dual.cartesian);
-    double mesh             = 0.;
+    const DualSolution<dim> *of_bounds = &dual;
+    double                   mesh      = 0.;
     estimate.space_at_least = estimate.unsigned_space = 0.;
     if (dual.norm > 0. || dual_problem.pieces_meet())
       {
@@ -164,7 +165,10 @@ namespace Viscoplastic
         if (creeps || (d.mean_dilatation && dual.norm > 0.))
           {
             if (creeps)
-              indicators = products_of_creep(end, creep, law, sides);
+              {
+                indicators = products_of_creep(end, creep, law, sides);
+                of_bounds  = &dual_of_creep.solution;
+              }
             else
               indicators = space_estimator.multiply_recovered(
                 state, dual, nullptr, {1., {}}, dual_of_step.recovered);
@@ -199,25 +203,39 @@ namespace Viscoplastic
         if (end.space_estimate.squared_indicators.size() > 0)
           end.space_estimate.squared_indicators = std::move(indicators);
       }
+    const Vector<double> bounds =
+      unresolved_bounds(state, state.contact, *of_bounds, estimate.slip_steps);
+    const auto by_bounds = sum_over_cells(bounds, triangulation);
+    mesh += dual_problem.sign() * by_bounds[0];
+    estimate.unsigned_space += safety * by_bounds[1];
     // The signs of sides may cancel by chance, too.
     const auto [of_sides, size_of_sides] = sum_over_cells(sides, triangulation);
     estimate.of_sides                    = dual_problem.sign() * of_sides;
     estimate.space_at_least =
-      std::max(estimate.space_at_least, least_share * size_of_sides);
+      std::max(estimate.space_at_least,
+               least_share * (size_of_sides + safety * by_bounds[1]));
     estimate.unsigned_space += size_of_sides;
-    Vector<double> held =
+    const Vector<double> held =
       boundary_defects.held_friction(state, quantity, dual.cartesian);
-    for (const Vector<double> *const parts : {&sides, &held})
-      if (Vector<double> &indicators = end.space_estimate.squared_indicators;
-          indicators.size() > 0 && parts->size() > 0)
-        for (unsigned int c = 0; c < indicators.size(); ++c)
-          indicators[c] += std::abs((*parts)[c]);
+    Vector<double> &indicators = end.space_estimate.squared_indicators;
+    if (indicators.size() > 0)
+      {
+        // Without products, they are still those of the energy norm.
+        if (!(dual.norm > 0. || dual_problem.pieces_meet()) &&
+            sides.size() + held.size() + bounds.size() > 0)
+          indicators = 0.;
+        for (const auto &[parts, factor] :
+             {std::make_pair(&std::as_const(sides), 1.),
+              std::make_pair(&held, 1.),
+              std::make_pair(&bounds, safety)})
+          for (unsigned int c = 0; c < parts->size(); ++c)
+            indicators[c] += factor * std::abs((*parts)[c]);
+      }
     const Vector<double> &of_geometry = end.space_estimate.geometry;
     double                geometry    = 0.;
     if (of_geometry.size() > 0) // on all ranks
       {
-        geometry                   = total_estimate(of_geometry, triangulation);
-        Vector<double> &indicators = end.space_estimate.squared_indicators;
+        geometry = total_estimate(of_geometry, triangulation);
         if (indicators.size() > 0 && geometry > 0.)
           indicators.add(dual.norm / geometry, of_geometry);
       }

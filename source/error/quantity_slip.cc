@@ -2,8 +2,8 @@
 #include <viscoplastic_contact/error/kelly_estimator.h>
 #include <viscoplastic_contact/error/quantity_estimator.h>
 
-// The parts of a quantity's error settled by slip: at points that come to rest,
-// turn or continue under other bounds.
+// The parts of a quantity's error by friction bounds, and those settled by
+// slip: at points that come to rest, turn or continue under other bounds.
 
 namespace Viscoplastic
 {
@@ -48,6 +48,22 @@ namespace Viscoplastic
 
 
   template <int dim>
+  Vector<double>
+  QuantityEstimator<dim>::unresolved_bounds(const State<dim>        &state,
+                                            const ContactState      &contact,
+                                            const DualSolution<dim> &dual,
+                                            const double slip_steps) const
+  {
+    if (!boundary_defects.has_varying_bounds() ||
+        !discretization.slipping_face())
+      return {};
+    return boundary_defects.unresolved_bounds(
+      state, dual_problem.change_by_bounds(contact, dual, slip_steps));
+  }
+
+
+
+  template <int dim>
   void
   QuantityEstimator<dim>::hold(BulkSolver                &solver,
                                const EvaluatedState<dim> &accepted,
@@ -83,20 +99,23 @@ namespace Viscoplastic
     if (settles)
       for (const bool is_held : {false, true})
         {
-          const DualSolution<dim> dual =
-            dual_problem.solve(solver, is_held ? held : old, law);
+          const ContactState     &then = is_held ? held : old;
+          const DualSolution<dim> dual = dual_problem.solve(solver, then, law);
+          const double sign = (is_held ? -1. : 1.) * dual_problem.sign();
+          const auto  &triangulation =
+            discretization.space.dof_handler.get_triangulation();
+          space +=
+            sign *
+            sum_over_cells(unresolved_bounds(accepted.state, then, dual, 1.),
+                           triangulation)[0];
           if (!(dual.norm > 0.))
             continue;
-          const double sign = (is_held ? -1. : 1.) * dual_problem.sign();
           const Vector<double> parts =
             space_estimator.multiply(accepted.state,
                                      accepted.forces,
                                      space_estimator.residuals_of(dual),
                                      0.);
-          space +=
-            sign *
-            sum_over_cells(
-              parts, discretization.space.dof_handler.get_triangulation())[0];
+          space += sign * sum_over_cells(parts, triangulation)[0];
         }
     estimate.rest_space = share * before.rest_space + space;
     estimate.settled_space =
@@ -139,6 +158,7 @@ namespace Viscoplastic
 
 
   VISCOPLASTIC_INSTANTIATE_MEMBER(QuantityEstimator, settle);
+  VISCOPLASTIC_INSTANTIATE_MEMBER(QuantityEstimator, unresolved_bounds);
   VISCOPLASTIC_INSTANTIATE_MEMBER(QuantityEstimator, hold);
   VISCOPLASTIC_INSTANTIATE_MEMBER(QuantityEstimator, add_slip_defects);
 } // namespace Viscoplastic

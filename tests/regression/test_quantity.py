@@ -595,6 +595,19 @@ class Kept(TestCase):
                 self.assertLess(error, tolerance * np.abs(force).max())
                 self.assertIn("has been kept", result.stdout)
 
+    def test_force_under_a_bound_that_jumps_within_a_face(self):
+        """All points slip at the kink: the force is the integral of the bound."""
+        exact, tolerance = 0.3 * 0.01 + 0.7 * 0.04, 0.03
+        entries = {"Time/Phases": "1: 8", "Mesh refinement/Strategy": "automatic"}
+        points = {"Material/Stress history": "quadrature points"}
+        result = run(
+            "kinked_load_2d",
+            {**entries, **points, **of("friction_force_x", tolerance)},
+        )
+        self.assertIn("has been kept", result.stdout)
+        error = max(result["friction_force_x"]) / exact - 1
+        self.assertLess(abs(error), tolerance)
+
     def test_slip_that_comes_to_rest_in_a_step(self):
         """A load that slackens while the bound grows, the same at all points:
         the force is that of the bound until all is at rest."""
@@ -1340,6 +1353,45 @@ class OnTheBoundary(TestCase):
         # measured: 4.5; 29 with the bound of the node at the corner
         self.assertGreater(result["quantity_space"][-1] / abs(error), 0.7)
         self.assertLess(result["quantity_space"][-1] / abs(error), 6)
+
+    def test_bounds_that_jump_within_faces(self):
+        """All of the floor slips beneath a stiff block."""
+        pressure, jump = 5, "if(x < 30, 0.004, 0.001)"
+        for dim, arguments, ranks in (
+            (2, "4, 2 : 0, 0 : 100, 50 : true", 1),
+            (3, "4, 2, 2 : 0, 0, 0 : 100, 50, 50 : true", 2),
+        ):
+            area = 100 * 50 ** (dim - 2)
+            exact = pressure * area * (0.3 * 0.004 + 0.7 * 0.001)
+            floor, top = f"Boundary {2 * dim - 2}", f"Boundary {2 * dim - 1}"
+            block = {
+                "Dimension": dim,
+                "Geometry/Arguments": arguments,
+                "Material/Young's modulus": 5000,
+                "Material/Poisson's ratio": 0,
+                **with_roles(free=range(2 * dim - 2)),
+                f"{floor}/Role": "contact",
+                f"{top}/Role": "displacement",
+                f"{top}/Displacement": "10*max(0, t - 0.5)"
+                + "; 0" * (dim - 2)
+                + "; -0.1*min(t, 0.5)",
+            }
+            laws = {
+                "tresca": {f"{floor}/Friction bound": f"{pressure}*{jump}"},
+                "coulomb": {
+                    f"{floor}/Contact law": "unilateral",
+                    f"{floor}/Friction coefficient": jump,
+                },
+            }
+            for law, entries in laws.items():
+                scene = {**block, f"{floor}/Friction law": law, **entries}
+                for column, value in (
+                    ("friction_force_x", exact),
+                    (f"reaction_{2 * dim - 1}_x", exact),
+                    ("friction_dissipation", 5 * exact),
+                ):
+                    with self.subTest(dim=dim, law=law):
+                        self.compare(column, value, ranks, (1.8, 2.1), **scene)
 
     def test_straight_sides(self):
         """Shells: what statics says of sections and forces holds for the body, not

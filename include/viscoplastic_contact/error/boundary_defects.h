@@ -5,14 +5,16 @@
 #include <viscoplastic_contact/scene/quantity_of_interest.h>
 
 #include <array>
+#include <optional>
 #include <vector>
 
 namespace Viscoplastic
 {
   /// Errors of a quantity of interest at the boundary that no residual
-  /// contains: straight sides of cells where the body is curved, and friction
-  /// missing where other conditions hold nodes on Gamma_3. Constructed once per
-  /// mesh; does no work in scenes without such sides or nodes.
+  /// contains: straight sides of cells where the body is curved, friction
+  /// missing where other conditions hold nodes on Gamma_3, and friction bounds
+  /// that vary within faces by more than their quadrature sees. Constructed
+  /// once per mesh; does no work in scenes without these.
   template <int dim>
   class BoundaryDefects
   {
@@ -46,6 +48,21 @@ namespace Viscoplastic
                   const QuantityOfInterest &quantity,
                   const DistributedVector  &ghosted_w) const;
 
+    /// Return the error by the quadrature of friction bounds, by active cell,
+    /// as by a bound that jumps within a face: the change of the bounds by a
+    /// composite rule, times @p change_by_bounds, the change of the quantity
+    /// per unit of the bound of each point. Empty if no bound depends on
+    /// position. Collective.
+    Vector<double>
+    unresolved_bounds(const State<dim>          &state,
+                      const std::vector<double> &change_by_bounds) const;
+
+    bool
+    has_varying_bounds() const
+    {
+      return any_varying_bounds;
+    }
+
   private:
     /// A quadrature point of a straight side and its image on the manifold.
     struct SidePoint
@@ -75,15 +92,33 @@ namespace Viscoplastic
       std::vector<std::size_t> vertices;
     };
 
+    /// The change of int f phi at a vertex of a face, by a composite rule, for
+    /// f = BoundaryCondition::bound() and f = friction_coefficient().
+    struct ChangeOfBound
+    {
+      unsigned int                  active_cell;
+      std::size_t                   first; // of the vertex's relevant dofs
+      const BoundaryCondition<dim> *condition;
+      double                        bound, coefficient;
+    };
+
     void
     find_sides();
     void
     find_held_nodes();
 
+    /// Return the changes at time t that are more than rounding.
+    std::vector<ChangeOfBound>
+    changes_of_bounds(const double t) const;
+
     const Discretization<dim> &discretization;
     std::vector<SidePoint>     side_points;
     std::vector<HeldNode>      held_nodes;
+    /// Those at any time, if friction depends on position alone.
+    std::optional<std::vector<ChangeOfBound>> constant_changes;
     /// Whether any rank has side points or held nodes.
     bool any_sides, any_held_nodes;
+    /// Whether some friction bound depends on position.
+    bool any_varying_bounds = false;
   };
 } // namespace Viscoplastic

@@ -132,6 +132,18 @@ namespace Viscoplastic
                      const DistributedVector &load,
                      DistributedVector       &u) const;
 
+    /// Return the change of sign J per unit of the friction bound of each
+    /// point, with the direction t of its slip (zero without slip):
+    ///
+    ///     -t . w_c,   of a friction force -t . (w_c - e) with its direction e,
+    ///
+    /// of the work of friction the slip in @p slip_steps steps like this one
+    /// more.
+    std::vector<double>
+    change_by_bounds(const ContactState      &contact,
+                     const DualSolution<dim> &dual,
+                     const double             slip_steps) const;
+
     double
     sign() const
     {

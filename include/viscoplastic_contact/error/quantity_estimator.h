@@ -176,6 +176,14 @@ namespace Viscoplastic
     double
     assess_mesh(const CoulombLaw *law, EvaluatedState<dim> &end) const;
 
+    /// Return BoundaryDefects::unresolved_bounds() for a dual solution at a
+    /// state, with points that stick or slip as in @p contact. Collective.
+    Vector<double>
+    unresolved_bounds(const State<dim>        &state,
+                      const ContactState      &contact,
+                      const DualSolution<dim> &dual,
+                      const double             slip_steps) const;
+
     /// Characteristic numbers of the creep of a body.
     struct Creep
     {

@@ -279,6 +279,17 @@ namespace Viscoplastic
              (normal_stress && normal_stress->depends_on_time());
     }
 
+    bool
+    friction_depends_on_position() const
+    {
+      return std::any_of(friction_data.begin(),
+                         friction_data.end(),
+                         [](const auto &datum) {
+                           return datum.depends_on_position();
+                         }) ||
+             (normal_stress && normal_stress->depends_on_position());
+    }
+
     /// Whether the data of friction or gap() depend on time.
     bool
     bound_depends_on_time() const

@@ -351,18 +351,18 @@ namespace Viscoplastic
     const QuantityOfInterest  &quantity = *d.scene().quantity;
     const bool                 is_sum   = quantity.is_sum();
     estimate.value                      = dual_problem.value(state, end.forces);
+    const std::optional<CoulombLaw> law = law_of_step(accepted.state, state);
+    const CoulombLaw *const         linearized = law ? &*law : nullptr;
     if (is_sum)
       {
         estimate.value += before.value;
         // While nothing slips, the dual solution of the last slip is used.
         estimate.dual_norm  = before.dual_norm;
         estimate.dual_error = before.dual_error;
-        settle(accepted, state.contact, estimate);
+        settle(solver, linearized, accepted, state.contact, estimate);
       }
 
-    const std::optional<CoulombLaw> law = law_of_step(accepted.state, state);
-    const CoulombLaw *const         linearized = law ? &*law : nullptr;
-    const bool                      carries =
+    const bool carries =
       !is_sum && d.scene().has_viscosity() && state.k > 0.; // collective
     if (carries)
       carry_time_error(solver, linearized, accepted.state, end);

@@ -9,39 +9,58 @@ namespace Viscoplastic
 {
   template <int dim>
   void
-  QuantityEstimator<dim>::settle(const EvaluatedState<dim> &accepted,
+  QuantityEstimator<dim>::settle(BulkSolver                &solver,
+                                 const CoulombLaw          *law,
+                                 const EvaluatedState<dim> &accepted,
                                  const ContactState        &contact,
                                  QuantityEstimate          &estimate) const
   {
-    const ContactState &old = accepted.state.contact;
-    // Bounds of points that have slipped, their decrease for points that
-    // continue to slip, and the quadrature error.
-    std::vector<double> sums(3, 0.);
+    const QuantityEstimate &before = accepted.errors.quantity;
+    const ContactState     &old    = accepted.state.contact;
+    ContactState            held   = old;
+    // Of points that have slipped: the bounds of those that rest or turn back
+    // now, of the others, and their decrease; and the quadrature error.
+    std::vector<double> sums(4, 0.);
     for (const unsigned int p : discretization.face->layout().friction_points())
       {
         if (!old.sticks[p])
           {
-            sums[0] += old.bound[p];
-            sums[1] += old.bound[p];
-            if (!contact.sticks[p] &&
-                contact.multiplier[p] * old.multiplier[p] >= 0.)
-              sums[1] -= contact.bound[p];
+            held.sticks[p] = contact.sticks[p] ||
+                             contact.multiplier[p] * old.multiplier[p] < 0.;
+            sums[held.sticks[p] ? 0 : 1] += old.bound[p];
+            if (!held.sticks[p])
+              sums[2] += old.bound[p] - contact.bound[p];
           }
         if (!contact.sticks[p])
-          sums[2] -=
+          sums[3] -=
             0.5 * (contact.bound[p] - old.bound[p]) * contact.slip[p].norm();
       }
     Utilities::MPI::sum(sums, discretization.space.communicator, sums);
-    const QuantityEstimate &before = accepted.errors.quantity;
-    const double            share  = sums[0] > 0. ? sums[1] / sums[0] : 0.;
-    const double            work   = estimate.value - before.value;
-    estimate.slip_work             = (1. - share) * before.slip_work + work;
-    estimate.slip_steps            = work > 0. ? estimate.slip_work / work : 0.;
-    estimate.settled_space =
-      before.settled_space +
-      share * (before.space_correction - before.settled_space);
+    const double all    = sums[0] + sums[1];
+    const double share  = all > 0. ? (sums[0] + sums[2]) / all : 0.;
+    const double work   = estimate.value - before.value;
+    estimate.slip_work  = (1. - share) * before.slip_work + work;
+    estimate.slip_steps = work > 0. ? estimate.slip_work / work : 0.;
+    // The error at the start of the step, and that of what slips on.
+    const double mesh = before.space_correction - before.settled_space;
+    double       left = mesh;
+    if (sums[0] > 0. && accepted.state.k > 0.)
+      {
+        left = 0.;
+        if (sums[1] > 0.)
+          {
+            EvaluatedState<dim> resting = accepted;
+            resting.state.contact       = held;
+            resting.space_estimate      = {};
+            renew(solver, discretization.matrix, resting, law, dual_of_step);
+            left = assess_mesh(law, resting);
+          }
+      }
+    estimate.settled_space = before.settled_space + (mesh - left);
+    if (sums[1] > 0.)
+      estimate.settled_space += sums[2] / sums[1] * left;
     estimate.settled_time =
-      before.settled_time + sums[2] +
+      before.settled_time + sums[3] +
       share * (before.time_correction - before.settled_time);
   }
 

@@ -39,7 +39,8 @@ namespace Viscoplastic
   ///   time t under steady loads, less while they grow, and unbounded where
   ///   stress relaxes: C and the memory of forces fade accordingly.
   /// - the boundary: BoundaryDefects, which R does not contain. The errors by
-  ///   straight sides are signed, as those of the mesh.
+  ///   straight sides and by bounds that vary within faces are signed, as those
+  ///   of the mesh.
   /// - time steps: R_z(w) = -(e_z, eps(w)) + sum_c f_c . e_c with the errors of
   ///   z and of sticking points from carry_time_error(), and the constraint
   ///   forces f_c of w at the latter. For sums over steps -(D, eps(w)) with the
@@ -56,12 +57,14 @@ namespace Viscoplastic
   /// The work of friction, int rho |s'|, is sum rho_c |s_c| with s_c the slip
   /// since point c began to slip: its error is that of J(u) at the end of a
   /// step, and for points that have come to rest since, that at the time when
-  /// they did. That share of the error is settled (settled_space,
-  /// settled_time); if bounds change, so is its share -d(rho)/rho, by
-  /// integration by parts. Bounds at the ends of steps, instead of those in
-  /// between, make a quadrature error -1/2 (rho_n - rho_{n-1}) |s|, settled at
-  /// once. If bounds follow the pressure, its errors count for the slip up to
-  /// now, taken as that of slip_steps steps like the last one.
+  /// they did. The error is continuous then: what it loses with these points
+  /// held, at the state from which the step starts, is settled (settled_space;
+  /// of time steps, in proportion to bounds: settled_time); if bounds change,
+  /// so is its share -d(rho)/rho, by integration by parts. Bounds at the ends
+  /// of steps, instead of those in between, make a quadrature error -1/2 (rho_n
+  /// - rho_{n-1}) |s|, settled at once. If bounds follow the pressure, its
+  /// errors count for the slip up to now, taken as that of slip_steps steps
+  /// like the last one.
   ///
   /// Sticking points keep the error e_c at which they came to rest, and any
   /// other quantity has the error sum_c f_c . e_c with the constraint force f_c
@@ -241,10 +244,13 @@ namespace Viscoplastic
     double
     time_error(const State<dim> &state) const;
 
-    /// Settle the part of a sum's error that later steps cannot change.
-    /// Collective.
+    /// Settle the part of a sum's error that later steps cannot change: of the
+    /// mesh, the error at the start of the step less that with points held that
+    /// come to rest or turn back. Collective. Throws ExcMessage.
     void
-    settle(const EvaluatedState<dim> &accepted,
+    settle(BulkSolver                &solver,
+           const CoulombLaw          *law,
+           const EvaluatedState<dim> &accepted,
            const ContactState        &contact,
            QuantityEstimate          &estimate) const;
 

@@ -53,63 +53,67 @@ namespace Viscoplastic
                                          much_of_nothing) &&
              (run.n_cells << dim) <= most_cells;
     }
-  } // namespace
 
 
 
-  template <int dim>
-  std::string
-  pilot_run(const Parameters                          &parameters,
-            ErrorBudget                               &budget,
-            StepControl                               &control,
-            parallel::distributed::Triangulation<dim> &triangulation)
-  {
-    Console      silence(MPI_COMM_WORLD, /* quiet = */ true);
-    double       size        = 0.;
-    unsigned int refinements = 0;
-    std::string  quantity, failure;
-    try
-      {
-        const unsigned int most =
-          parameters.refinement.strategy != RefinementStrategy::none ? 5 - dim :
-                                                                       0;
-        for (unsigned int n = 0; n <= most; ++n)
-          {
-            const Parameters         pilot({}, assignments(parameters, n));
-            ViscoplasticContact<dim> problem(pilot, silence);
-            const RunSummary<dim>    summary = problem.run_without_files();
-            if (size == 0.)
-              refinements = n;
-            size     = summary.controlled_errors().size;
-            quantity = summary.quantity;
-            control.expect_dual_norms(summary.dual_times, summary.dual_norms);
-            if (!is_too_coarse(summary))
-              break;
-          }
-      }
-    catch (const std::exception &exception)
-      {
-        // If a finer mesh fails, the result of the coarser one is used.
-        failure = reason(exception);
-      }
-    budget.expect_size(size);
-    if (size == 0.)
-      return failure.empty() ?
+    /// Estimate the size of a scene's solution by a run without files on its
+    /// first mesh, with at most 8 steps per phase: see
+    /// ViscoplasticContact::PilotRun.
+    template <int dim>
+    std::string
+    pilot_run(const Parameters                          &parameters,
+              ErrorBudget                               &budget,
+              StepControl                               &control,
+              parallel::distributed::Triangulation<dim> &triangulation)
+    {
+      Console      silence(MPI_COMM_WORLD, /* quiet = */ true);
+      double       size        = 0.;
+      unsigned int refinements = 0;
+      std::string  quantity, failure;
+      try
+        {
+          const unsigned int most =
+            parameters.refinement.strategy != RefinementStrategy::none ?
+              5 - dim :
+              0;
+          for (unsigned int n = 0; n <= most; ++n)
+            {
+              const Parameters         pilot({}, assignments(parameters, n));
+              ViscoplasticContact<dim> problem(pilot, silence, nullptr);
+              const RunSummary<dim>    summary = problem.run_without_files();
+              if (size == 0.)
+                refinements = n;
+              size     = summary.controlled_errors().size;
+              quantity = summary.quantity;
+              control.expect_dual_norms(summary.dual_times, summary.dual_norms);
+              if (!is_too_coarse(summary))
+                break;
+            }
+        }
+      catch (const std::exception &exception)
+        {
+          // If a finer mesh fails, the result of the coarser one is used.
+          failure = reason(exception);
+        }
+      budget.expect_size(size);
+      if (size == 0.)
+        return failure.empty() ?
+                 "" :
+                 "Note: the run on the first mesh that tells how large the "
+                 "solution becomes has failed, so that errors will be relative "
+                 "to what it has been so far: " +
+                   failure;
+      triangulation.refine_global(refinements);
+      return refinements == 0 ?
                "" :
-               "Note: the run on the first mesh that tells how large the "
-               "solution becomes has failed, so that errors will be relative "
-               "to what it has been so far: " +
-                 failure;
-    triangulation.refine_global(refinements);
-    return refinements == 0 ?
-             "" :
-             "Note: '" + PlaceNames(parameters).quantity(quantity) +
-               "' is zero on the scene's first mesh, which errs much; this "
-               "run begins with 'Geometry/Global refinements' = " +
-               std::to_string(parameters.geometry.global_refinements +
-                              refinements) +
-               '.';
-  }
+               "Note: '" + PlaceNames(parameters).quantity(quantity) +
+                 "' is zero on the scene's first mesh, which errs much; this "
+                 "run begins with 'Geometry/Global refinements' = " +
+                 std::to_string(parameters.geometry.global_refinements +
+                                refinements) +
+                 '.';
+    }
+  } // namespace
 
 
 
@@ -119,15 +123,18 @@ namespace Viscoplastic
                 Console                   &console,
                 const CommandLine::Restart restart)
   {
-    auto pass = std::make_unique<ViscoplasticContact<dim>>(parameters, console);
+    auto        pass = std::make_unique<ViscoplasticContact<dim>>(parameters,
+                                                           console,
+                                                           pilot_run<dim>);
     std::string interruption = pass->run(restart);
     while (pass->needs_another_pass())
       {
         console.stream() << "Again from the beginning, on the mesh that has "
                             "been found:"
                          << std::endl;
-        auto next =
-          std::make_unique<ViscoplasticContact<dim>>(parameters, console);
+        auto next = std::make_unique<ViscoplasticContact<dim>>(parameters,
+                                                               console,
+                                                               nullptr);
         next->follow(*pass);
         pass         = std::move(next); // which unlocks the directories
         interruption = pass->run(CommandLine::Restart::no);
@@ -137,6 +144,5 @@ namespace Viscoplastic
 
 
 
-  VISCOPLASTIC_INSTANTIATE(pilot_run);
   VISCOPLASTIC_INSTANTIATE(run_in_passes);
 } // namespace Viscoplastic

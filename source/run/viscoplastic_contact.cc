@@ -4,7 +4,6 @@
 #include <viscoplastic_contact/discretization/initial_state.h>
 #include <viscoplastic_contact/mesh/mesh_refinement.h>
 #include <viscoplastic_contact/run/announcer.h>
-#include <viscoplastic_contact/run/passes.h>
 #include <viscoplastic_contact/run/scene_check.h>
 #include <viscoplastic_contact/run/viscoplastic_contact.h>
 
@@ -12,11 +11,13 @@ namespace Viscoplastic
 {
   template <int dim>
   ViscoplasticContact<dim>::ViscoplasticContact(const Parameters &parameters,
-                                                Console          &console)
+                                                Console          &console,
+                                                const PilotRun    pilot_run)
     : scene(parameters)
     , triangulation(MPI_COMM_WORLD)
     , fe(FE_Q<dim>(1), dim)
     , dof_handler(triangulation)
+    , pilot_run(pilot_run)
     , budget(ErrorBudget::of_run(parameters))
     , control(parameters, scene.schedule, budget.get())
     , mesh_controller(scene, triangulation, budget.get())

@@ -7,17 +7,6 @@
 
 namespace Viscoplastic
 {
-  /// Estimate the size of a scene's solution by a run without files on its
-  /// first mesh, with at most 8 steps per phase: tells budget and step control
-  /// what they have to know before the first step, and refines the first mesh
-  /// if it has to be. Returns a remark.
-  template <int dim>
-  std::string
-  pilot_run(const Parameters                          &parameters,
-            ErrorBudget                               &budget,
-            StepControl                               &control,
-            parallel::distributed::Triangulation<dim> &triangulation);
-
   /// Run a scene in as many passes as it takes. A run to the tolerance of a
   /// quantity of interest on adaptive meshes may take several: creep and slip
   /// depend on all meshes so far, which the estimate of a quantity neglects.

@@ -25,7 +25,18 @@ namespace Viscoplastic
   public:
     using Mesh = parallel::distributed::Triangulation<dim>;
 
-    ViscoplasticContact(const Parameters &parameters, Console &console);
+    /// Tells budget and step control what they have to know before the first
+    /// step, by runs of its own, and refines the first mesh if it has to be.
+    /// Returns a remark.
+    using PilotRun = std::string (*)(const Parameters &,
+                                     ErrorBudget &,
+                                     StepControl &,
+                                     Mesh &);
+
+    /// @p pilot_run: for runs to a tolerance that do not follow() another pass.
+    ViscoplasticContact(const Parameters &parameters,
+                        Console          &console,
+                        const PilotRun    pilot_run);
 
     /// Simulate from the start or from a checkpoint. Returns a sentence if a
     /// signal has ended the run early, after a checkpoint. If another pass is
@@ -102,6 +113,7 @@ namespace Viscoplastic
     DoFHandler<dim>     dof_handler;
 
     // Control of passes, meshes and steps; pointers are null if not wanted.
+    const PilotRun                       pilot_run;
     PassState                            pass;
     std::unique_ptr<ErrorBudget>         budget;
     StepControl                          control;

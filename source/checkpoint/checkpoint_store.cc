@@ -19,7 +19,7 @@ namespace Viscoplastic
   {
     const std::string  manifest_name = "manifest.txt";
     const std::string  key_of_format = "viscoplastic_contact checkpoint";
-    const unsigned int format        = 16;
+    const unsigned int format        = 17;
 
 
 

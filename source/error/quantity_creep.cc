@@ -84,7 +84,7 @@ namespace Viscoplastic
   QuantityEstimator<dim>::step_of_creep(const EvaluatedState<dim> &end,
                                         const FlowRate            &rate) const
   {
-    // Checkpoints keep the path of creep, not its time.
+    // The creep time at this rate, which a new mesh changes.
     const StressSpace<dim> &stress_space = discretization.stress_space;
     double                  square       = 0.;
     std::size_t             i            = 0;

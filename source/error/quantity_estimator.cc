@@ -341,6 +341,7 @@ namespace Viscoplastic
                                  const SlipDefects           *slip_defects,
                                  const std::optional<double> &growth,
                                  const EvaluatedState<dim>   &accepted,
+                                 const FlowRate              *old_rate,
                                  EvaluatedState<dim>         &end) const
   {
     const Discretization<dim> &d        = discretization;
@@ -359,7 +360,7 @@ namespace Viscoplastic
         // While nothing slips, the dual solution of the last slip is used.
         estimate.dual_norm  = before.dual_norm;
         estimate.dual_error = before.dual_error;
-        settle(solver, linearized, accepted, state.contact, estimate);
+        settle(solver, linearized, accepted, old_rate, state.contact, estimate);
       }
 
     const bool carries =

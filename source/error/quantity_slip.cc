@@ -12,6 +12,7 @@ namespace Viscoplastic
   QuantityEstimator<dim>::settle(BulkSolver                &solver,
                                  const CoulombLaw          *law,
                                  const EvaluatedState<dim> &accepted,
+                                 const FlowRate            *old_rate,
                                  const ContactState        &contact,
                                  QuantityEstimate          &estimate) const
   {
@@ -52,6 +53,8 @@ namespace Viscoplastic
             EvaluatedState<dim> resting = accepted;
             resting.state.contact       = held;
             resting.space_estimate      = {};
+            if (old_rate != nullptr) // absent from a state that is restored
+              resting.rate = *old_rate;
             renew(solver, discretization.matrix, resting, law, dual_of_step);
             left = assess_mesh(law, resting);
           }

@@ -233,6 +233,7 @@ namespace Viscoplastic
                                  slip_defects ? &*slip_defects : nullptr,
                                  growth,
                                  accepted,
+                                 old_rate,
                                  end);
     const ErrorEstimate &estimate = end.errors;
     StepErrors           errors;
@@ -352,7 +353,7 @@ namespace Viscoplastic
       return;
     TimerOutput::Scope phase(timer, "estimate");
     quantity_estimator->assess(
-      solver_of_elasticity().bulk(), nullptr, {}, initial, initial);
+      solver_of_elasticity().bulk(), nullptr, {}, initial, nullptr, initial);
   }
 
 

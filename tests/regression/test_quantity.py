@@ -724,17 +724,24 @@ class Kept(TestCase):
             "Boundary 3/Role": "displacement",
             "Boundary 3/Displacement": "0; -0.1*min(t, 1)",
         }
-        for column, tolerance, more in (
-            ("reaction_3_x", 0.005, {}),
-            ("friction_dissipation", 0.005, {}),
-            ("friction_dissipation", 0.06, pressed),
+        sheared = {
+            "Geometry/Arguments": "12, 2 : 0, 0 : 0.12, 0.02 : true",
+            "Time/Phases": "60: 80",
+            "Time/Scheme": "Heun",
+        }
+        for name, last, scene in (
+            ("slab", None, {**COARSE_SLAB, **of("reaction_3_x", 0.005)}),
+            ("slab", None, {**COARSE_SLAB, **of("friction_dissipation", 0.005)}),
+            ("slab", None, {**COARSE_SLAB, **pressed, **of("friction_dissipation", 0.06)}),
+            # Points come to rest in the step after it.
+            ("sheared_slab_2d", 16, {**sheared, **of("friction_dissipation")}),
         ):
-            scene = {**COARSE_SLAB, **EVERY_STEP, **more, **of(column, tolerance)}
-            with Job("slab", scene) as job:
+            scene = {**scene, **EVERY_STEP}
+            with Job(name, scene) as job:
                 reference = job.run()
                 rows = without_wall_times(reference.directory / "statistics.csv")
-                with Job("slab", scene, copy_of=job) as again:
-                    again.forget_after(job.steps()[-6])
+                with Job(name, scene, copy_of=job) as again:
+                    again.forget_after(last or job.steps()[-6])
                     result = again.run("--restart")
                     self.assertEqual(
                         without_wall_times(result.directory / "statistics.csv"), rows

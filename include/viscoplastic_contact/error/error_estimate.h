@@ -100,8 +100,9 @@ namespace Viscoplastic
     {
       ErrorParts::serialize(archive, 0);
       archive &value &space_correction &time_correction &settled_space
-        &settled_time &slip_work &rest_space &unsigned_space &space_at_least
-          &of_sides &of_boundary &turning &resting &dual_norm &dual_error;
+        &settled_time &slip_work &slip_steps &rest_space &unsigned_space
+          &space_at_least &of_sides &of_boundary &turning &resting &dual_norm
+            &dual_error;
     }
   };
 
@@ -152,7 +153,8 @@ namespace Viscoplastic
     {
       ErrorParts::serialize(archive, 0);
       archive &quantity &swing &swing_share &time_indicator &velocity_variation
-        &energy_norm &velocity_square &creep_path &since_estimate &slip_begun;
+        &energy_norm &velocity_square &creep_path &creep_time &since_estimate
+          &slip_begun;
     }
   };
 

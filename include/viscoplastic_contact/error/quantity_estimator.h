@@ -124,12 +124,14 @@ namespace Viscoplastic
     /// of a step, whose estimate in the energy norm is complete. @p solver: for
     /// the matrix of a(.,.). @p slip_defects: of the step, if any. @p growth:
     /// the ratio of the mesh part to that of @p accepted, if it is not
-    /// estimated anew. Collective. Throws ExcMessage.
+    /// estimated anew. @p old_rate: G of @p accepted, null if not known.
+    /// Collective. Throws ExcMessage.
     void
     assess(BulkSolver                  &solver,
            const SlipDefects           *slip_defects,
            const std::optional<double> &growth,
            const EvaluatedState<dim>   &accepted,
+           const FlowRate              *old_rate,
            EvaluatedState<dim>         &end) const;
 
     /// Whether the tangents of creep are those of another creep time than that
@@ -251,6 +253,7 @@ namespace Viscoplastic
     settle(BulkSolver                &solver,
            const CoulombLaw          *law,
            const EvaluatedState<dim> &accepted,
+           const FlowRate            *old_rate,
            const ContactState        &contact,
            QuantityEstimate          &estimate) const;
 
